@@ -1,0 +1,42 @@
+# SPDX-License-Identifier: BSD-3-Clause
+
+# lintel_warnings(TARGET): the warnings every target of the house is compiled with.
+function(lintel_warnings TARGET)
+  target_compile_options(${TARGET} PRIVATE -Wall -Wextra -Wpedantic -Wshadow -Wnon-virtual-dtor -Woverloaded-virtual)
+endfunction()
+
+# lintel_room(NAME SOURCES file… [ROOMS room…] [PRIVATE target…] [TESTS file…] [TEST_LINKS target…])
+#
+# One room: the static library lintel_NAME (alias lintel::NAME) with its public headers in include/lintel/NAME.
+# ROOMS are rooms above it in LINTEL_ROOMS; anything else is refused. PRIVATE are third parties.
+# TESTS become the executable NAME_tests, every case known to ctest.
+function(lintel_room NAME)
+  cmake_parse_arguments(ARG "" "" "SOURCES;ROOMS;PRIVATE;TESTS;TEST_LINKS" ${ARGN})
+  if(ARG_UNPARSED_ARGUMENTS)
+    message(FATAL_ERROR "lintel_room(${NAME}): unknown arguments ${ARG_UNPARSED_ARGUMENTS}")
+  endif()
+  list(FIND LINTEL_ROOMS ${NAME} own_place)
+  foreach(room IN LISTS ARG_ROOMS)
+    list(FIND LINTEL_ROOMS ${room} place)
+    if(place LESS 0 OR place GREATER_EQUAL own_place)
+      message(FATAL_ERROR "room ${NAME} must not depend on room ${room}: see LINTEL_ROOMS")
+    endif()
+  endforeach()
+
+  add_library(lintel_${NAME} STATIC ${ARG_SOURCES})
+  add_library(lintel::${NAME} ALIAS lintel_${NAME})
+  lintel_warnings(lintel_${NAME})
+  target_include_directories(lintel_${NAME} PUBLIC
+    $<BUILD_INTERFACE:${CMAKE_CURRENT_SOURCE_DIR}/include> $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}>)
+  list(TRANSFORM ARG_ROOMS PREPEND lintel::)
+  target_link_libraries(lintel_${NAME} PUBLIC Eigen3::Eigen ${ARG_ROOMS} PRIVATE ${ARG_PRIVATE})
+
+  if(BUILD_TESTING AND ARG_TESTS)
+    add_executable(${NAME}_tests ${ARG_TESTS})
+    lintel_warnings(${NAME}_tests)
+    target_include_directories(${NAME}_tests PRIVATE ${CMAKE_CURRENT_SOURCE_DIR}/src ${CMAKE_CURRENT_SOURCE_DIR}/tests)
+    target_link_libraries(${NAME}_tests PRIVATE lintel::${NAME} ${ARG_TEST_LINKS} GTest::gtest GTest::gmock GTest::gtest_main)
+    gtest_discover_tests(${NAME}_tests DISCOVERY_MODE PRE_TEST TEST_PREFIX ${NAME}. PROPERTIES LABELS unit TIMEOUT 60)
+  endif()
+endfunction()
+include(GoogleTest)

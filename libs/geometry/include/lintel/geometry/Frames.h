@@ -1,0 +1,24 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+// Frames of reference, named by one letter everywhere in Lintel:
+//
+//   w  world: z up, gravity (0, 0, -9.81) m/s^2; origin and yaw are those of the first pose
+//   b  body: the IMU
+//   c  camera: x right, y down, z forward
+//   l  line: the reference point a line's moment is taken about (PluckerLine.h)
+//
+// `T_a_b` maps coordinates in b to coordinates in a: p_a = T_a_b * p_b; neighbouring letters cancel,
+// T_a_c = T_a_b * T_b_c. `R_a_b` is its rotation, `p_a_b` the origin of b in a. `v_w_b`: velocity of b seen in w.
+
+#include <Eigen/Core>
+
+namespace lintel {
+
+/// Standard gravity of the EuRoC halls [m/s^2]; the world's gravity vector is (0, 0, -kGravity).
+constexpr double kGravity = 9.81;
+
+/// Gravity acceleration in the world frame [m/s^2].
+inline Eigen::Vector3d gravityW() { return {0.0, 0.0, -kGravity}; }
+
+}  // namespace lintel

@@ -1,0 +1,69 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <Eigen/Core>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "lintel/geometry/Pose.h"
+#include "lintel/geometry/Segment.h"
+#include "lintel/sensing/Rig.h"
+
+namespace lintel {
+
+/// A keyframe of the map.
+struct MapKeyframe {
+  std::uint64_t id = 0;
+  std::int64_t t_ns = 0;
+  Pose T_w_b;
+  Eigen::Vector3d v_w_b = Eigen::Vector3d::Zero();       ///< [m/s]
+  Eigen::Vector3d bias_gyro = Eigen::Vector3d::Zero();   ///< [rad/s]
+  Eigen::Vector3d bias_accel = Eigen::Vector3d::Zero();  ///< [m/s^2]
+};
+
+/// Where a keyframe saw a point.
+struct MapPointObservation {
+  std::uint64_t keyframe_id = 0;
+  Eigen::Vector2d px = Eigen::Vector2d::Zero();  ///< raw (distorted) pixels
+};
+
+struct MapPoint {
+  std::uint64_t id = 0;
+  Eigen::Vector3d p_w = Eigen::Vector3d::Zero();  ///< [m]
+  double sigma_distance_m = 0;                    ///< standard deviation along the viewing ray
+  std::int64_t first_t_ns = 0, last_t_ns = 0;
+  std::vector<MapPointObservation> observations;  ///< ascending keyframe id
+};
+
+/// Where a keyframe saw a line. Start and end correspond to the map line's.
+struct MapLineObservation {
+  std::uint64_t keyframe_id = 0;
+  Eigen::Vector2d start_px = Eigen::Vector2d::Zero(), end_px = Eigen::Vector2d::Zero();  ///< raw (distorted) pixels
+};
+
+/// A finite 3D line segment with its uncertainty and provenance.
+struct MapLine {
+  std::uint64_t id = 0;
+  Segment3 segment_w;                            ///< ends in the world [m]
+  double sigma_direction_rad = 0;                ///< standard deviation of the direction in its worst plane
+  double sigma_distance_m = 0;                   ///< standard deviation of the position, worst way across the line
+  std::int64_t first_t_ns = 0, last_t_ns = 0;
+  bool degenerate = false;                       ///< its own observations leave the direction or depth open
+  bool constrained = false;                      ///< direction taken from a group of parallel lines
+  int group = -1;                                ///< parallel group, -1 = none
+  std::vector<MapLineObservation> observations;  ///< ascending keyframe id
+};
+
+/// The product: keyframes, points and line segments in one world frame (z up).
+struct LineMap {
+  Rig rig;                              ///< calibration in use at the end
+  std::string configuration;            ///< effective configuration, YAML text
+  std::string source;                   ///< name of the recording
+  std::vector<MapKeyframe> keyframes;   ///< ascending id
+  std::vector<MapPoint> points;         ///< ascending id
+  std::vector<MapLine> lines;           ///< ascending id
+  std::vector<std::pair<std::int64_t, Pose>> trajectory;  ///< (t_ns, T_w_b) of every frame, ascending
+};
+
+}  // namespace lintel
