@@ -1,0 +1,88 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "TextRows.h"
+
+#include <cerrno>
+#include <charconv>
+#include <cmath>
+#include <cstring>
+
+#include "lintel/evaluation/TrajectoryFile.h"
+
+namespace lintel {
+
+namespace {
+
+constexpr const char* kBlanks = " \t\r";
+
+std::string_view trimmed(std::string_view text) {
+  const auto first = text.find_first_not_of(kBlanks);
+  if (first == std::string_view::npos) return {};
+  return text.substr(first, text.find_last_not_of(kBlanks) - first + 1);
+}
+
+}  // namespace
+
+TextRows::TextRows(const std::string& path) : path_(path), in_(path) {
+  if (!in_) throw EvaluationError(path + ": cannot be opened (" + std::strerror(errno) + "); check the name");
+}
+
+bool TextRows::next(bool skip_comments) {
+  while (std::getline(in_, line_)) {
+    ++line_number_;
+    const std::string_view text = trimmed(line_);
+    if (text.empty() || (skip_comments && text.front() == '#')) continue;
+    split();
+    return true;
+  }
+  if (in_.bad()) throw EvaluationError(path_ + ": cannot be read to its end; give a text file");
+  return false;
+}
+
+void TextRows::split() {
+  fields_.clear();
+  std::string_view rest = trimmed(line_);
+  comma_separated_ = rest.find(',') != std::string_view::npos;
+  const char* separators = comma_separated_ ? "," : kBlanks;
+  while (true) {
+    const auto end = rest.find_first_of(separators);
+    fields_.push_back(trimmed(rest.substr(0, end)));
+    if (end == std::string_view::npos) return;
+    rest.remove_prefix(end + 1);
+    if (!comma_separated_) rest = trimmed(rest);
+  }
+}
+
+void TextRows::fail(const std::string& what) const {
+  throw EvaluationError(path_ + ":" + std::to_string(line_number_) + ": " + what);
+}
+
+template <class T>
+T TextRows::parse(std::size_t index, const char* expected) const {
+  const std::string column = "column " + std::to_string(index + 1);
+  if (index >= fields_.size()) fail(column + " is missing");
+  std::string_view text = fields_[index];
+  if (!text.empty() && text.front() == '+') text.remove_prefix(1);
+  T value{};
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  if (error != std::errc() || end != text.data() + text.size())
+    fail(column + " should be " + expected + ", but is '" + std::string(fields_[index]) + "'");
+  return value;
+}
+
+double TextRows::number(std::size_t index) const {
+  const auto value = parse<double>(index, "a number");
+  if (!std::isfinite(value)) fail("column " + std::to_string(index + 1) + " is not finite; remove the row");
+  return value;
+}
+
+std::int64_t TextRows::integer(std::size_t index) const {
+  return parse<std::int64_t>(index, "a time in integer nanoseconds");
+}
+
+std::int64_t TextRows::secondsAsNanoseconds(std::size_t index) const {
+  const auto seconds = parse<long double>(index, "a time in seconds");
+  if (!(std::abs(seconds) < 9e9L)) fail("the time is not in seconds");
+  return std::llround(seconds * 1e9L);
+}
+
+}  // namespace lintel

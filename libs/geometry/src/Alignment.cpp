@@ -1,0 +1,85 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "lintel/geometry/Alignment.h"
+
+#include <Eigen/Geometry>
+#include <cmath>
+#include <stdexcept>
+#include <utility>
+
+namespace lintel {
+
+namespace {
+
+constexpr std::pair<AlignmentKind, const char*> kNames[] = {{AlignmentKind::kNone, "none"},
+                                                            {AlignmentKind::kSe3, "se3"},
+                                                            {AlignmentKind::kYaw, "yaw"},
+                                                            {AlignmentKind::kSim3, "sim3"}};
+
+Eigen::Map<const Eigen::Matrix3Xd> columns(const std::vector<Eigen::Vector3d>& points) {
+  return {points.front().data(), 3, static_cast<Eigen::Index>(points.size())};
+}
+
+Similarity alignYaw(const Eigen::Ref<const Eigen::Matrix3Xd>& from, const Eigen::Ref<const Eigen::Matrix3Xd>& to) {
+  const Eigen::Vector3d from_mean = from.rowwise().mean(), to_mean = to.rowwise().mean();
+  const Eigen::Matrix3Xd f = from.colwise() - from_mean, t = to.colwise() - to_mean;
+  // sum |t - Rz f|^2 is smallest where cosine * C + sine * S is largest
+  const double C = f.row(0).dot(t.row(0)) + f.row(1).dot(t.row(1));
+  const double S = f.row(0).dot(t.row(1)) - f.row(1).dot(t.row(0));
+  Similarity result;
+  result.T_a_b.q = Eigen::AngleAxisd(std::atan2(S, C), Eigen::Vector3d::UnitZ());
+  result.T_a_b.p = to_mean - result.T_a_b.q * from_mean;
+  return result;
+}
+
+Similarity alignUmeyama(const Eigen::Ref<const Eigen::Matrix3Xd>& from, const Eigen::Ref<const Eigen::Matrix3Xd>& to,
+                        bool with_scale) {
+  // A scale needs movement: below, the ratio of the spreads is rounding noise.
+  const double spread = (from.colwise() - from.rowwise().mean().eval()).norm();
+  const bool moves = spread > 1e-9 * (1 + from.norm());
+  const Eigen::Matrix4d M = Eigen::umeyama(from, to, with_scale && moves);
+  Similarity result;
+  if (with_scale && moves) result.scale = std::cbrt(M.topLeftCorner<3, 3>().determinant());
+  if (!(result.scale > 0)) {  // the partners do not move: everything shrinks onto their mean
+    result.scale = 0;
+    result.T_a_b.p = to.rowwise().mean();
+    return result;
+  }
+  Eigen::Matrix4d T = M;
+  T.topLeftCorner<3, 3>() /= result.scale;
+  result.T_a_b = poseFromMatrix(T);
+  return result;
+}
+
+}  // namespace
+
+AlignmentKind alignmentKindOf(const std::string& name) {
+  for (const auto& [kind, kind_name] : kNames)
+    if (name == kind_name) return kind;
+  throw std::invalid_argument("alignment '" + name + "' is none of none, se3, yaw, sim3");
+}
+
+std::string nameOf(AlignmentKind kind) {
+  for (const auto& [known, name] : kNames)
+    if (known == kind) return name;
+  throw std::invalid_argument("not an AlignmentKind");
+}
+
+Similarity alignPositions(AlignmentKind kind, const std::vector<Eigen::Vector3d>& from_b,
+                          const std::vector<Eigen::Vector3d>& to_a) {
+  if (from_b.size() != to_a.size() || from_b.empty())
+    throw std::invalid_argument("alignPositions needs as many positions on either side, and at least one");
+  const auto from = columns(from_b), to = columns(to_a);
+  switch (kind) {
+    case AlignmentKind::kNone:
+      return {};
+    case AlignmentKind::kYaw:
+      return alignYaw(from, to);
+    case AlignmentKind::kSe3:
+      return alignUmeyama(from, to, false);
+    case AlignmentKind::kSim3:
+      return alignUmeyama(from, to, true);
+  }
+  throw std::invalid_argument("not an AlignmentKind");
+}
+
+}  // namespace lintel

@@ -1,0 +1,70 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "ProgramMain.h"
+
+#include <CLI/App.hpp>
+#include <CLI/Config.hpp>
+#include <CLI/Formatter.hpp>
+#include <algorithm>
+#include <cerrno>
+#include <cstdio>
+#include <cstring>
+#include <fstream>
+#include <new>
+#include <ostream>
+
+namespace lintel {
+
+namespace {
+
+std::string oneLine(std::string text) {
+  while (!text.empty() && text.back() == '\n') text.pop_back();
+  std::replace(text.begin(), text.end(), '\n', ' ');
+  return text;
+}
+
+}  // namespace
+
+int programMain(const std::string& name, std::ostream& err, const std::function<int()>& body) {
+  try {
+    return body();
+  } catch (const UsageError& error) {
+    err << name << ": " << oneLine(error.what()) << "; see " << name << " --help\n";
+    return 2;
+  } catch (const std::bad_alloc&) {
+    err << name << ": out of memory; free some, or give a shorter part of the recording\n";
+  } catch (const std::exception& error) {
+    err << name << ": " << oneLine(error.what()) << "\n";
+  }
+  return 1;
+}
+
+std::optional<int> parseArguments(CLI::App& app, int argc, const char* const* argv, std::ostream& out,
+                                  std::ostream& err) {
+  app.set_version_flag("--version", app.get_name() + " " + LINTEL_VERSION, "Print the version and exit");
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& error) {
+    if (error.get_exit_code() == 0) return app.exit(error, out, err);  // --help, --version
+    err << app.get_name() << ": " << oneLine(error.what()) << "; see " << app.get_name() << " --help\n";
+    return 2;
+  }
+  return std::nullopt;
+}
+
+void writeFileAtomically(const std::string& path, const std::string& content) {
+  const std::string beside = path + ".part";
+  const auto fail = [&] {
+    const int error = errno;
+    std::remove(beside.c_str());
+    throw std::runtime_error(path + ": cannot be written (" + std::strerror(error) +
+                             "); check the folder and its disk");
+  };
+  errno = 0;
+  std::ofstream file(beside, std::ios::binary | std::ios::trunc);
+  if (!file) fail();
+  file.write(content.data(), static_cast<std::streamsize>(content.size()));
+  file.close();
+  if (!file || std::rename(beside.c_str(), path.c_str()) != 0) fail();
+}
+
+}  // namespace lintel
