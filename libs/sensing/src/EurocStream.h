@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "EurocFolder.h"
+#include "SensorStream.h"
+
+namespace lintel {
+
+/// cam0 and imu0 of an EuRoC folder.
+class EurocStream final : public SensorStream {
+ public:
+  /// Throws RecordingError.
+  explicit EurocStream(const std::string& path);
+
+  const Rig& rig() const override { return rig_; }
+  const std::string& path() const override { return mav0_; }
+  std::size_t countFrames(const RecordingParams& params) const override;
+  std::optional<FrameRef> nextFrame(const WarningSink& warn) override;
+  std::optional<ImuSample> nextImu(std::int64_t needed_ns, const WarningSink& warn) override;
+
+ private:
+  void checkOverlap() const;
+
+  std::string mav0_, camera_folder_, imu_folder_;
+  Rig rig_;
+  EurocImageList images_;
+  EurocImuList imu_;
+};
+
+}  // namespace lintel

@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <string>
+
+#include "lintel/sensing/Rig.h"
+
+namespace lintel {
+
+/// camN/sensor.yaml.
+struct EurocCamera {
+  PinholeRadtan model;
+  Pose T_v_c;  ///< T_BS: camera in the vehicle's frame, canonical
+  double rate_hz = 0;
+};
+
+/// imu0/sensor.yaml.
+struct EurocImu {
+  ImuNoise noise;
+  Pose T_v_b;  ///< T_BS: IMU in the vehicle's frame (identity in EuRoC), canonical
+  double rate_hz = 0;
+};
+
+/// Both throw RecordingError naming file and key when something is missing, not supported or makes no sense.
+EurocCamera loadEurocCamera(const std::string& path);
+EurocImu loadEurocImu(const std::string& path);
+
+/// The rig of one camera and one IMU whose poses are given in the same vehicle frame.
+Rig rigOf(const EurocCamera& camera, const EurocImu& imu);
+
+/// Throws RecordingError naming `where` when no lens can have these values.
+void checkCamera(const PinholeRadtan& camera, const std::string& where);
+
+}  // namespace lintel

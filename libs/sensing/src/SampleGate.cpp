@@ -1,0 +1,24 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "SampleGate.h"
+
+#include "TimeTicks.h"
+
+namespace lintel {
+
+bool StampGate::admit(std::int64_t t_ns, const std::function<std::string()>& where, const WarningSink& warn) {
+  if (t_ns > last_ns_) {
+    last_ns_ = t_ns;
+    return true;
+  }
+  const char* fault = t_ns == last_ns_ ? "has the same time as the one before" : "is older than the one before";
+  warn(fault_, where() + ": " + what_ + " at " + secondsText(t_ns) + " " + fault + ": skipped");
+  return false;
+}
+
+bool ImuGate::admit(const ImuSample& sample, const std::function<std::string()>& where, const WarningSink& warn) {
+  if (sample.gyro.allFinite() && sample.accel.allFinite()) return stamps_.admit(sample.t_ns, where, warn);
+  warn(Fault::ImuValue, where() + ": IMU sample at " + secondsText(sample.t_ns) + " is not finite: skipped");
+  return false;
+}
+
+}  // namespace lintel
