@@ -22,9 +22,9 @@ struct LineObservation {
   TrackId id = 0;
   Eigen::Vector2d start_px = Eigen::Vector2d::Zero(), end_px = Eigen::Vector2d::Zero();  ///< raw (distorted) pixels
   Eigen::Vector2d start = Eigen::Vector2d::Zero(), end = Eigen::Vector2d::Zero();        ///< undistorted (x/z, y/z)
-  double sigma_px = 1.0;     ///< standard deviation of an end's distance from the true line [px]
-  int track_length = 1;      ///< frames in which it has been seen, this one included
-  bool detected = true;      ///< seen by the detector in this frame; false: position predicted by optical flow alone
+  double sigma_px = 1.0;  ///< standard deviation of an end's distance from the true line [px]
+  int track_length = 1;   ///< frames in which it has been seen, this one included
+  bool detected = true;   ///< seen by the detector in this frame; false: position predicted by optical flow alone
 };
 
 /// All features of one frame with their identity over time.

@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <Eigen/Core>
+#include <memory>
+
+#include "lintel/sensing/Frame.h"
+#include "lintel/sensing/Rig.h"
+#include "lintel/tracking/FrameTracks.h"
+#include "lintel/tracking/FrontEndParams.h"
+#include "lintel/tracking/FrontEndStatistics.h"
+
+namespace lintel {
+
+/// Images and gyroscope in, features with identity out. Deterministic, whatever the number of OpenCV's threads, and
+/// independent of the estimator, so that it may run on a thread of its own.
+///
+/// Every frame is tracked (small motion between images keeps tracks alive); the estimator may use every n-th result.
+class FrontEnd {
+ public:
+  /// Throws std::invalid_argument, naming the parameter, when one is out of range or the rig has no image size.
+  FrontEnd(const Rig& rig, const FrontEndParams& params);
+  ~FrontEnd();
+  FrontEnd(FrontEnd&&) noexcept;
+  FrontEnd& operator=(FrontEnd&&) noexcept;
+
+  /// Features of `frame`. `imu_since_last` covers the time from the previous frame to this one (sensing/Frame.h); when
+  /// it is empty the last rotation rate is assumed to go on. Throws std::invalid_argument when the image does not have
+  /// the rig's size, or the frame is not later than the one before.
+  FrameTracks process(const Frame& frame, const ImuBatch& imu_since_last);
+
+  /// Rotation of the last step as seen by gyro and points together, R_c1_c0; identity at the start.
+  Eigen::Matrix3d lastRotation() const;
+
+  /// Gyro bias as estimated from the points' motion, body frame [rad/s].
+  Eigen::Vector3d gyroBias() const;
+
+  const FrontEndStatistics& statistics() const;
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace lintel

@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <string>
+#include <vector>
+
+namespace lintel {
+
+/// Wall time of one stage, a value per run of it [ms].
+struct StageTimes {
+  std::vector<float> ms;
+
+  double mean() const;
+  /// The value below which a share `q` in [0, 1] of the runs lies; 0 without runs.
+  double quantile(double q) const;
+  double sum() const;
+};
+
+/// Lives of tracks that have ended: lifetimes[n] tracks were seen in n frames.
+struct TrackLifetimes {
+  std::map<int, std::int64_t> ended;
+
+  void add(int frames) { ++ended[frames]; }
+  std::int64_t count() const;
+  /// Share of ended tracks seen in at least `frames` frames; 0 without tracks.
+  double shareOfAtLeast(int frames) const;
+  double median() const;
+};
+
+struct PointStatistics {
+  std::int64_t tracked = 0;        ///< points carried over from the frame before, summed over frames
+  std::int64_t detected = 0;       ///< new points
+  std::int64_t lost_klt = 0;       ///< not found, or out of the image
+  std::int64_t lost_backward = 0;  ///< forward-backward check
+  std::int64_t lost_epipolar = 0;  ///< off the epipolar line
+  std::int64_t lost_crowded = 0;   ///< ran into an older point
+  TrackLifetimes lifetimes;
+};
+
+/// What the front end has done so far. All but the times is deterministic.
+struct FrontEndStatistics {
+  std::int64_t frames = 0;
+  std::int64_t frames_without_gyro = 0;
+  PointStatistics points;
+  std::map<std::string, StageTimes> stages;  ///< by name of the stage
+};
+
+}  // namespace lintel

@@ -1,0 +1,24 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <opencv2/core.hpp>
+#include <vector>
+
+#include "lintel/tracking/FrontEndParams.h"
+
+namespace lintel {
+
+/// Finds new corners to track where there are none yet, spread evenly over the image.
+class CornerDetector {
+ public:
+  explicit CornerDetector(const PointTrackerParams& params) : params_(params) {}
+
+  /// Up to `wanted` corners of `image` (CV_8U), at least min_distance_px from `taken` and from each other. Cells of the
+  /// image with fewer points come first, then stronger corners.
+  std::vector<cv::Point2f> detect(const cv::Mat& image, const std::vector<cv::Point2f>& taken, int wanted) const;
+
+ private:
+  PointTrackerParams params_;
+};
+
+}  // namespace lintel

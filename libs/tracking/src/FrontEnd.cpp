@@ -1,0 +1,66 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "lintel/tracking/FrontEnd.h"
+
+#include <stdexcept>
+#include <string>
+
+#include "GyroPrediction.h"
+#include "ImagePyramid.h"
+#include "ParamsCheck.h"
+#include "PointTracker.h"
+#include "StageTimer.h"
+
+namespace lintel {
+
+struct FrontEnd::Impl {
+  Impl(const Rig& rig_in, const FrontEndParams& params)
+      : rig(rig_in),
+        pyramid(params.pyramid, params.points.window_px),
+        gyro(rig, params.points.initial_gyro_bias_sigma),
+        points(rig, params.points) {}
+
+  Rig rig;
+  ImagePyramid pyramid;
+  GyroPrediction gyro;
+  PointTracker points;
+  FrontEndStatistics statistics;
+  std::int64_t last_t_ns = 0;
+};
+
+FrontEnd::FrontEnd(const Rig& rig, const FrontEndParams& params) {
+  checkParams(rig, params);
+  impl_ = std::make_unique<Impl>(rig, params);
+}
+FrontEnd::~FrontEnd() = default;
+FrontEnd::FrontEnd(FrontEnd&&) noexcept = default;
+FrontEnd& FrontEnd::operator=(FrontEnd&&) noexcept = default;
+
+FrameTracks FrontEnd::process(const Frame& frame, const ImuBatch& imu_since_last) {
+  Impl& m = *impl_;
+  checkFrame(m.rig, frame);
+  const bool first = m.statistics.frames == 0;
+  if (!first && frame.t_ns <= m.last_t_ns)
+    throw std::invalid_argument("FrontEnd: frame " + std::to_string(frame.t_ns) + " is not later than the one before");
+
+  StageTimer total(m.statistics, "total");
+  {
+    StageTimer timer(m.statistics, "pyramid");
+    m.pyramid.push(*frame.image);
+  }
+  if (!first && !m.gyro.predict(imu_since_last, 1e-9 * static_cast<double>(frame.t_ns - m.last_t_ns)))
+    ++m.statistics.frames_without_gyro;
+  m.points.process(m.pyramid, m.gyro, m.statistics);
+
+  ++m.statistics.frames;
+  m.last_t_ns = frame.t_ns;
+  FrameTracks tracks;
+  tracks.t_ns = frame.t_ns;
+  tracks.points = m.points.points();
+  return tracks;
+}
+
+Eigen::Matrix3d FrontEnd::lastRotation() const { return impl_->gyro.R_c1_c0().toRotationMatrix(); }
+Eigen::Vector3d FrontEnd::gyroBias() const { return impl_->gyro.bias(); }
+const FrontEndStatistics& FrontEnd::statistics() const { return impl_->statistics; }
+
+}  // namespace lintel

@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <Eigen/Core>
+#include <Eigen/Geometry>
+
+#include "lintel/sensing/Frame.h"
+#include "lintel/sensing/Rig.h"
+
+namespace lintel {
+
+/// Predicts how the camera turned between two frames from the gyroscope, whose bias (up to 0.1 rad/s, more than 2 px a
+/// frame) it learns from what the points say afterwards.
+class GyroPrediction {
+ public:
+  GyroPrediction(const Rig& rig, double initial_bias_sigma);
+
+  /// Integrates a batch to R_c1_c0 over `dt_s`. An empty (or degenerate) batch: the last rotation rate goes on.
+  /// Returns whether gyro data was used.
+  bool predict(const ImuBatch& imu, double dt_s);
+
+  /// The predicted (after `correct`: corrected) rotation of the step.
+  const Eigen::Quaterniond& R_c1_c0() const { return R_c1_c0_; }
+
+  /// How far the prediction may be off: information of its error rotation vector, camera frame c1 [1/rad^2].
+  Eigen::Matrix3d information() const;
+
+  /// What the points saw: R_true = Exp(delta) * R_predicted, with the information of delta (camera frame c1).
+  void correct(const Eigen::Vector3d& delta, const Eigen::Matrix3d& information);
+
+  /// Body frame [rad/s].
+  const Eigen::Vector3d& bias() const { return bias_; }
+
+ private:
+  Eigen::Quaterniond R_b_c_;
+  Eigen::Vector3d bias_ = Eigen::Vector3d::Zero();
+  Eigen::Matrix3d bias_information_;
+  Eigen::Quaterniond R_c1_c0_ = Eigen::Quaterniond::Identity();
+  Eigen::Vector3d rate_c_ = Eigen::Vector3d::Zero();  ///< rotation vector of R_c1_c0 per second
+  double dt_s_ = 0;
+  bool from_gyro_ = false;
+};
+
+}  // namespace lintel

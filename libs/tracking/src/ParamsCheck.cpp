@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "ParamsCheck.h"
+
+#include <sstream>
+#include <stdexcept>
+#include <string>
+
+namespace lintel {
+namespace {
+
+/// `!(in range)` also catches NaN.
+void require(const char* name, double value, double low, double high) {
+  if (value >= low && value <= high) return;
+  std::ostringstream text;
+  text << "front end: " << name << " = " << value << ", must be from " << low << " to " << high;
+  throw std::invalid_argument(text.str());
+}
+
+}  // namespace
+
+void checkParams(const Rig& rig, const FrontEndParams& params) {
+  require("camera width", rig.camera.width, 64, 20000);
+  require("camera height", rig.camera.height, 64, 20000);
+  require("camera fx", rig.camera.fx, 1, 1e6);
+  require("camera fy", rig.camera.fy, 1, 1e6);
+  require("pyramid.levels", params.pyramid.levels, 1, 8);
+  require("pyramid.clip_limit", params.pyramid.clip_limit, 0.1, 1000);
+  const PointTrackerParams& p = params.points;
+  require("points.max_points", p.max_points, 1, 10000);
+  require("points.min_distance_px", p.min_distance_px, 1, 1000);
+  require("points.min_quality", p.min_quality, 0, 1);
+  require("points.detect_every_n", p.detect_every_n, 1, 1000);
+  require("points.window_px", p.window_px, 5, 51);
+  require("points.max_iterations", p.max_iterations, 1, 1000);
+  require("points.forward_backward_px", p.forward_backward_px, 0.001, 100);
+  require("points.epipolar_px", p.epipolar_px, 0.01, 1000);
+  require("points.border_px", p.border_px, 0, 100);
+  require("points.initial_gyro_bias_sigma", p.initial_gyro_bias_sigma, 1e-6, 10);
+}
+
+void checkFrame(const Rig& rig, const Frame& frame) {
+  const std::string at = "front end: frame " + std::to_string(frame.t_ns);
+  if (!frame.image) throw std::invalid_argument(at + " has no image");
+  const GrayImage& image = *frame.image;
+  if (image.width != rig.camera.width || image.height != rig.camera.height ||
+      image.pixels.size() != static_cast<std::size_t>(image.width) * static_cast<std::size_t>(image.height))
+    throw std::invalid_argument(at + " is " + std::to_string(image.width) + "x" + std::to_string(image.height) +
+                                ", the rig's camera is " + std::to_string(rig.camera.width) + "x" +
+                                std::to_string(rig.camera.height));
+}
+
+}  // namespace lintel

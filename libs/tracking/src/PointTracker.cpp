@@ -1,0 +1,146 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "PointTracker.h"
+
+#include <cmath>
+#include <opencv2/video/tracking.hpp>
+
+#include "DistanceGrid.h"
+#include "Prediction.h"
+#include "StageTimer.h"
+
+namespace lintel {
+namespace {
+
+constexpr double kMinEigenvalue = 1e-4;  ///< OpenCV's default: patches without texture fail
+constexpr int kBackwardLevels = 1;       ///< the way back starts at the answer: two levels suffice
+
+bool inside(const PinholeRadtan& camera, const cv::Point2f& p, double border) {
+  return camera.contains({p.x, p.y}, border);
+}
+
+}  // namespace
+
+PointTracker::PointTracker(const Rig& rig, const PointTrackerParams& params)
+    : camera_(rig.camera), params_(params), detector_(params) {}
+
+std::vector<cv::Point2f> PointTracker::pixels() const {
+  std::vector<cv::Point2f> px;
+  px.reserve(points_.size());
+  for (const PointObservation& p : points_) px.emplace_back(static_cast<float>(p.px.x()), static_cast<float>(p.px.y()));
+  return px;
+}
+
+void PointTracker::process(const ImagePyramid& pyramid, GyroPrediction& gyro, FrontEndStatistics& statistics) {
+  flow_.clear();
+  if (pyramid.hasPrevious() && !points_.empty()) {
+    StageTimer timer(statistics, "points_klt");
+    Followed followed = follow(pyramid, gyro, statistics.points);
+    rejectByEpipolarGeometry(followed, gyro, statistics.points);
+    rejectCrowded(followed, statistics.points);
+    accept(followed, gyro, statistics.points);
+  }
+  if (++frames_since_detection_ >= params_.detect_every_n ||
+      points_.size() * 3 < static_cast<std::size_t>(params_.max_points)) {
+    StageTimer timer(statistics, "points_detect");
+    addNew(pyramid, statistics.points);
+    frames_since_detection_ = 0;
+  }
+}
+
+PointTracker::Followed PointTracker::follow(const ImagePyramid& pyramid, const GyroPrediction& gyro,
+                                            PointStatistics& statistics) const {
+  Followed followed;
+  const std::vector<cv::Point2f> from = pixels();
+  for (const PointObservation& p : points_) followed.px.push_back(turnedPixel(camera_, gyro.R_c1_c0(), p.normalised));
+  followed.alive.assign(from.size(), 1);
+
+  const cv::Size window(params_.window_px, params_.window_px);
+  const cv::TermCriteria criteria(cv::TermCriteria::COUNT | cv::TermCriteria::EPS, params_.max_iterations, 0.01);
+  std::vector<unsigned char> found, returned;
+  std::vector<cv::Point2f> back = from;
+  cv::calcOpticalFlowPyrLK(pyramid.previous(), pyramid.current(), from, followed.px, found, cv::noArray(), window,
+                           pyramid.levels() - 1, criteria, cv::OPTFLOW_USE_INITIAL_FLOW, kMinEigenvalue);
+  cv::calcOpticalFlowPyrLK(pyramid.current(), pyramid.previous(), followed.px, back, returned, cv::noArray(), window,
+                           std::min(kBackwardLevels, pyramid.levels() - 1), criteria, cv::OPTFLOW_USE_INITIAL_FLOW,
+                           kMinEigenvalue);
+  for (std::size_t i = 0; i < from.size(); ++i) {
+    if (!found[i] || !inside(camera_, followed.px[i], params_.border_px)) {
+      followed.alive[i] = 0;
+      ++statistics.lost_klt;
+    } else if (!returned[i] || cv::norm(back[i] - from[i]) > params_.forward_backward_px) {
+      followed.alive[i] = 0;
+      ++statistics.lost_backward;
+    }
+  }
+  return followed;
+}
+
+void PointTracker::rejectByEpipolarGeometry(Followed& followed, GyroPrediction& gyro,
+                                            PointStatistics& statistics) const {
+  std::vector<TwoViewPair> pairs;
+  std::vector<std::size_t> index;
+  for (std::size_t i = 0; i < points_.size(); ++i) {
+    if (!followed.alive[i]) continue;
+    pairs.push_back({points_[i].normalised, camera_.normalise({followed.px[i].x, followed.px[i].y})});
+    index.push_back(i);
+  }
+  TwoViewParams two_view;
+  two_view.focal_px = camera_.meanFocal();
+  two_view.threshold_px = params_.epipolar_px;
+  const TwoViewMotion motion = twoViewMotion(pairs, gyro.R_c1_c0(), gyro.information(), two_view);
+  for (std::size_t k = 0; k < index.size(); ++k)
+    if (!motion.inlier[k]) {
+      followed.alive[index[k]] = 0;
+      ++statistics.lost_epipolar;
+    }
+  // Half of the points off any epipolar line: the scene moves or the images are bad; nothing to learn about the gyro.
+  if (motion.inliers >= 15 && 2 * static_cast<std::size_t>(motion.inliers) > pairs.size())
+    gyro.correct(motion.delta, motion.information);
+}
+
+void PointTracker::rejectCrowded(Followed& followed, PointStatistics& statistics) const {
+  // Half of the distance that new points keep: tracks may approach each other, but not become the same. Ids ascend, so
+  // that the older one stays.
+  DistanceGrid occupied(camera_.width, camera_.height, 0.5 * params_.min_distance_px);
+  for (std::size_t i = 0; i < points_.size(); ++i) {
+    if (!followed.alive[i]) continue;
+    if (occupied.isFree(followed.px[i])) {
+      occupied.insert(followed.px[i]);
+    } else {
+      followed.alive[i] = 0;
+      ++statistics.lost_crowded;
+    }
+  }
+}
+
+void PointTracker::accept(const Followed& followed, const GyroPrediction& gyro, PointStatistics& statistics) {
+  std::vector<PointObservation> kept;
+  for (std::size_t i = 0; i < points_.size(); ++i) {
+    if (!followed.alive[i]) {
+      statistics.lifetimes.add(points_[i].track_length);
+      continue;
+    }
+    PointObservation p = points_[i];
+    flow_.push_back({followed.px[i], followed.px[i] - turnedPixel(camera_, gyro.R_c1_c0(), p.normalised)});
+    p.px = {followed.px[i].x, followed.px[i].y};
+    p.normalised = camera_.normalise(p.px);
+    ++p.track_length;
+    kept.push_back(p);
+  }
+  statistics.tracked += static_cast<std::int64_t>(kept.size());
+  points_ = std::move(kept);
+}
+
+void PointTracker::addNew(const ImagePyramid& pyramid, PointStatistics& statistics) {
+  const int wanted = params_.max_points - static_cast<int>(points_.size());
+  for (const cv::Point2f& px : detector_.detect(pyramid.image(), pixels(), wanted)) {
+    PointObservation p;
+    p.id = next_id_++;
+    p.px = {px.x, px.y};
+    p.normalised = camera_.normalise(p.px);
+    points_.push_back(p);
+    ++statistics.detected;
+  }
+}
+
+}  // namespace lintel

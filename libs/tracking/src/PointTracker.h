@@ -1,0 +1,59 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <opencv2/core.hpp>
+#include <vector>
+
+#include "CornerDetector.h"
+#include "GyroPrediction.h"
+#include "ImagePyramid.h"
+#include "TwoViewMotion.h"
+#include "lintel/sensing/Rig.h"
+#include "lintel/tracking/FrameTracks.h"
+#include "lintel/tracking/FrontEndParams.h"
+#include "lintel/tracking/FrontEndStatistics.h"
+
+namespace lintel {
+
+/// A point that was followed into the current frame: what it did, for those who follow other things.
+struct PointFlow {
+  cv::Point2f px;        ///< in the current frame
+  cv::Point2f residual;  ///< flow beyond what the rotation explains
+};
+
+/// KLT tracks of corners from frame to frame. A point lost is lost: no re-detection under the old identity.
+class PointTracker {
+ public:
+  PointTracker(const Rig& rig, const PointTrackerParams& params);
+
+  /// Follows the points into the pyramid's current frame, improves `gyro` by what they saw, and adds new ones.
+  void process(const ImagePyramid& pyramid, GyroPrediction& gyro, FrontEndStatistics& statistics);
+
+  /// Points of the current frame, ascending id.
+  const std::vector<PointObservation>& points() const { return points_; }
+  /// Motion of the points that were followed into the current frame.
+  const std::vector<PointFlow>& flow() const { return flow_; }
+
+ private:
+  struct Followed {
+    std::vector<cv::Point2f> px;
+    std::vector<char> alive;
+  };
+
+  Followed follow(const ImagePyramid& pyramid, const GyroPrediction& gyro, PointStatistics& statistics) const;
+  void rejectByEpipolarGeometry(Followed& followed, GyroPrediction& gyro, PointStatistics& statistics) const;
+  void rejectCrowded(Followed& followed, PointStatistics& statistics) const;
+  void accept(const Followed& followed, const GyroPrediction& gyro, PointStatistics& statistics);
+  void addNew(const ImagePyramid& pyramid, PointStatistics& statistics);
+  std::vector<cv::Point2f> pixels() const;
+
+  PinholeRadtan camera_;
+  PointTrackerParams params_;
+  CornerDetector detector_;
+  std::vector<PointObservation> points_;
+  std::vector<PointFlow> flow_;
+  TrackId next_id_ = 1;
+  int frames_since_detection_ = 0;
+};
+
+}  // namespace lintel
