@@ -18,7 +18,7 @@ struct TrackSimulationParams {
   double duration_s = 10;  ///< from the first frame to the last
   double lead_in_s = 0.5;  ///< IMU before the first frame; whole IMU steps. The first frame is at this trajectory time
   int points = 1500;       ///< points round the path, all about
-  int lines = 240;         ///< lines round the path, all about
+  int lines = 320;         ///< lines round the path, all about
   int max_points_per_frame = 150;    ///< those tracked longest stay
   int max_lines_per_frame = 60;      ///< those tracked longest stay
   double axis_parallel_share = 0.7;  ///< share of the lines that are parallel to an axis of the world
