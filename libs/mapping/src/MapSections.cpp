@@ -1,0 +1,128 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "MapSections.h"
+
+namespace lintel {
+
+namespace {
+
+// Smallest bytes of one record, to bound what its announced number may reserve.
+constexpr std::size_t kKeyframeSize = 8 + 8 + 7 * 8 + 9 * 8, kPointObservationSize = 8 + 2 * 8,
+                      kPointSize = 8 + 3 * 8 + 8 + 16 + 8, kLineObservationSize = 8 + 4 * 8,
+                      kLineSize = 8 + 6 * 8 + 16 + 16 + 1 + 4 + 8, kTrajectorySize = 8 + 7 * 8;
+
+enum LineFlag : std::uint8_t { kDegenerate = 1, kConstrained = 2 };
+
+// One list of a rig's numbers serves both directions, so that they cannot come apart.
+template <class RigT, class Integer, class Number>
+void rigFields(RigT& rig, Integer&& integer, Number&& number) {
+  auto& camera = rig.camera;
+  integer(camera.width), integer(camera.height);
+  number(camera.fx), number(camera.fy), number(camera.cx), number(camera.cy);
+  number(camera.k1), number(camera.k2), number(camera.p1), number(camera.p2);
+  number(rig.camera_rate_hz), number(rig.imu_rate_hz);
+  auto& noise = rig.imu_noise;
+  number(noise.gyro_noise), number(noise.gyro_walk), number(noise.accel_noise), number(noise.accel_walk);
+}
+
+void encodeRig(const LineMap& map, ByteWriter& out) {
+  rigFields(
+      map.rig, [&](int v) { out.i32(v); }, [&](double v) { out.f64(v); });
+  out.pose(map.rig.T_b_c);
+}
+
+void decodeRig(ByteReader& in, LineMap& map) {
+  rigFields(
+      map.rig, [&](int& v) { v = in.i32(); }, [&](double& v) { v = in.f64(); });
+  map.rig.T_b_c = in.pose();
+}
+
+void encodeConfiguration(const LineMap& map, ByteWriter& out) { out.text(map.configuration); }
+void decodeConfiguration(ByteReader& in, LineMap& map) { map.configuration = in.text(); }
+void encodeSource(const LineMap& map, ByteWriter& out) { out.text(map.source); }
+void decodeSource(ByteReader& in, LineMap& map) { map.source = in.text(); }
+
+void encodeKeyframes(const LineMap& map, ByteWriter& out) {
+  out.u64(map.keyframes.size());
+  for (const MapKeyframe& keyframe : map.keyframes) {
+    out.u64(keyframe.id), out.i64(keyframe.t_ns), out.pose(keyframe.T_w_b);
+    out.vec3(keyframe.v_w_b), out.vec3(keyframe.bias_gyro), out.vec3(keyframe.bias_accel);
+  }
+}
+
+void decodeKeyframes(ByteReader& in, LineMap& map) {
+  map.keyframes.resize(in.count(kKeyframeSize));
+  for (MapKeyframe& keyframe : map.keyframes) {
+    keyframe.id = in.u64(), keyframe.t_ns = in.i64(), keyframe.T_w_b = in.pose();
+    keyframe.v_w_b = in.vec3(), keyframe.bias_gyro = in.vec3(), keyframe.bias_accel = in.vec3();
+  }
+}
+
+void encodePoints(const LineMap& map, ByteWriter& out) {
+  out.u64(map.points.size());
+  for (const MapPoint& point : map.points) {
+    out.u64(point.id), out.vec3(point.p_w), out.f64(point.sigma_distance_m);
+    out.i64(point.first_t_ns), out.i64(point.last_t_ns), out.u64(point.observations.size());
+    for (const MapPointObservation& seen : point.observations) out.u64(seen.keyframe_id), out.vec2(seen.px);
+  }
+}
+
+void decodePoints(ByteReader& in, LineMap& map) {
+  map.points.resize(in.count(kPointSize));
+  for (MapPoint& point : map.points) {
+    point.id = in.u64(), point.p_w = in.vec3(), point.sigma_distance_m = in.f64();
+    point.first_t_ns = in.i64(), point.last_t_ns = in.i64();
+    point.observations.resize(in.count(kPointObservationSize));
+    for (MapPointObservation& seen : point.observations) seen.keyframe_id = in.u64(), seen.px = in.vec2();
+  }
+}
+
+void encodeLines(const LineMap& map, ByteWriter& out) {
+  out.u64(map.lines.size());
+  for (const MapLine& line : map.lines) {
+    out.u64(line.id), out.vec3(line.segment_w.start), out.vec3(line.segment_w.end);
+    out.f64(line.sigma_direction_rad), out.f64(line.sigma_distance_m);
+    out.i64(line.first_t_ns), out.i64(line.last_t_ns);
+    out.u8(static_cast<std::uint8_t>((line.degenerate ? kDegenerate : 0) | (line.constrained ? kConstrained : 0)));
+    out.i32(line.group), out.u64(line.observations.size());
+    for (const MapLineObservation& seen : line.observations)
+      out.u64(seen.keyframe_id), out.vec2(seen.start_px), out.vec2(seen.end_px);
+  }
+}
+
+void decodeLines(ByteReader& in, LineMap& map) {
+  map.lines.resize(in.count(kLineSize));
+  for (MapLine& line : map.lines) {
+    line.id = in.u64(), line.segment_w.start = in.vec3(), line.segment_w.end = in.vec3();
+    line.sigma_direction_rad = in.f64(), line.sigma_distance_m = in.f64();
+    line.first_t_ns = in.i64(), line.last_t_ns = in.i64();
+    const std::uint8_t flags = in.u8();
+    line.degenerate = (flags & kDegenerate) != 0, line.constrained = (flags & kConstrained) != 0;
+    line.group = in.i32();
+    line.observations.resize(in.count(kLineObservationSize));
+    for (MapLineObservation& seen : line.observations) {
+      seen.keyframe_id = in.u64(), seen.start_px = in.vec2(), seen.end_px = in.vec2();
+    }
+  }
+}
+
+void encodeTrajectory(const LineMap& map, ByteWriter& out) {
+  out.u64(map.trajectory.size());
+  for (const auto& [t_ns, T_w_b] : map.trajectory) out.i64(t_ns), out.pose(T_w_b);
+}
+
+void decodeTrajectory(ByteReader& in, LineMap& map) {
+  map.trajectory.resize(in.count(kTrajectorySize));
+  for (auto& [t_ns, T_w_b] : map.trajectory) t_ns = in.i64(), T_w_b = in.pose();
+}
+
+}  // namespace
+
+const MapSection kMapSections[kMapSectionCount] = {{"RIG_", encodeRig, decodeRig},
+                                                   {"CONF", encodeConfiguration, decodeConfiguration},
+                                                   {"SRC_", encodeSource, decodeSource},
+                                                   {"KEYF", encodeKeyframes, decodeKeyframes},
+                                                   {"PNTS", encodePoints, decodePoints},
+                                                   {"LINE", encodeLines, decodeLines},
+                                                   {"TRAJ", encodeTrajectory, decodeTrajectory}};
+
+}  // namespace lintel

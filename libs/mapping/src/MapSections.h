@@ -1,0 +1,25 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstdint>
+#include <string_view>
+
+#include "ByteStream.h"
+#include "lintel/mapping/LineMap.h"
+
+namespace lintel {
+
+/// One section of the native map file: its name of four characters and how it becomes bytes and comes back.
+/// A section's layout never changes once released: what is added later goes into a section with a new name, which
+/// earlier readers skip; what is replaced raises the file's version.
+struct MapSection {
+  std::string_view name;
+  void (*encode)(const LineMap& map, ByteWriter& out);
+  void (*decode)(ByteReader& in, LineMap& map);  ///< throws ByteReaderError
+};
+
+/// All sections in the order in which they are written.
+constexpr std::size_t kMapSectionCount = 7;
+extern const MapSection kMapSections[kMapSectionCount];
+
+}  // namespace lintel

@@ -1,0 +1,225 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "lintel/mapping/MapFile.h"
+
+#include <gtest/gtest.h>
+#include <unistd.h>
+#include <zlib.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <filesystem>
+#include <fstream>
+#include <limits>
+#include <random>
+
+namespace lintel {
+namespace {
+
+namespace fs = std::filesystem;
+
+class MapFile : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    const auto* test = ::testing::UnitTest::GetInstance()->current_test_info();
+    folder_ = fs::temp_directory_path() / ("lintel_mapfile_" + std::string(test->name()) + std::to_string(::getpid()));
+    fs::create_directories(folder_);
+    path_ = (folder_ / "map.lintel").string();
+  }
+  void TearDown() override { fs::remove_all(folder_); }
+
+  std::size_t filesInFolder() const {
+    return static_cast<std::size_t>(std::distance(fs::directory_iterator(folder_), fs::directory_iterator()));
+  }
+
+  fs::path folder_;
+  std::string path_;
+};
+
+std::string bytesOf(const std::string& path) {
+  std::ifstream file(path, std::ios::binary);
+  return {std::istreambuf_iterator<char>(file), {}};
+}
+
+void put(const std::string& path, const std::string& bytes) { std::ofstream(path, std::ios::binary) << bytes; }
+
+LineMap sampleMap() {
+  std::mt19937_64 random(7);
+  std::uniform_real_distribution<double> any(-10, 10);
+  const auto vec = [&] { return Eigen::Vector3d(any(random), any(random), any(random)); };
+  const auto vec2 = [&] { return Eigen::Vector2d(any(random), any(random)); };
+  const auto pose = [&] {
+    return Pose{Eigen::Quaterniond(any(random), any(random), any(random), any(random)).normalized(), vec()};
+  };
+  LineMap map;
+  map.rig.camera = {752, 480, 458.654, 457.296, 367.215, 248.375, -0.28340811, 0.07395907, 0.00019359, 1.76187114e-05};
+  map.rig.T_b_c = pose();
+  map.rig.camera_rate_hz = 19.5, map.rig.imu_rate_hz = 201, map.rig.imu_noise = {1e-3, 2e-4, 3e-5, 4e-6};
+  map.configuration = std::string("a: 1\nb: \xC3\xA4\n\0c", 13);
+  map.source = "MH_01_easy";
+  for (std::uint64_t i = 0; i < 5; ++i)
+    map.keyframes.push_back({i * 3, std::int64_t(1403636579763555584 + i), pose(), vec(), vec(), vec()});
+  for (std::uint64_t i = 0; i < 20; ++i) {
+    map.points.push_back({i, vec(), std::abs(any(random)), -5, 1403636579763555584, {}});
+    for (std::uint64_t k = 0; k < i % 4; ++k) map.points.back().observations.push_back({k, vec2()});
+  }
+  for (std::uint64_t i = 0; i < 20; ++i) {
+    MapLine line{i + 100, {vec(), vec()}, 0.01, 0.02, 5, 6, i % 2 == 0, i % 3 == 0, int(i % 4) - 1, {}};
+    for (std::uint64_t k = 0; k < i % 5; ++k) line.observations.push_back({k, vec2(), vec2()});
+    map.lines.push_back(line);
+  }
+  map.lines[3].segment_w.start = {std::nan(""), -0.0, std::numeric_limits<double>::infinity()};
+  map.lines[4].segment_w.start = {std::numeric_limits<double>::denorm_min(), 1e308, 0.1};
+  map.lines[4].id = ~std::uint64_t{0};
+  for (int i = 0; i < 30; ++i) map.trajectory.emplace_back(1403636579763555584 + i, pose());
+  return map;
+}
+
+TEST_F(MapFile, EveryValueReturnsToTheBit) {
+  const LineMap map = sampleMap();
+  writeMap(map, path_);
+  const LineMap back = readMap(path_);
+  ASSERT_EQ(back.lines.size(), 20u);
+  ASSERT_EQ(back.points.size(), 20u);
+  ASSERT_EQ(back.keyframes.size(), 5u);
+  ASSERT_EQ(back.trajectory.size(), 30u);
+  EXPECT_EQ(back.configuration, map.configuration);
+  EXPECT_EQ(back.source, "MH_01_easy");
+  EXPECT_EQ(back.rig.camera.width, 752);
+  EXPECT_EQ(back.rig.camera.p2, 1.76187114e-05);
+  EXPECT_EQ(back.rig.T_b_c.q.coeffs(), map.rig.T_b_c.q.coeffs());
+  EXPECT_EQ(back.rig.imu_noise.accel_walk, 4e-6);
+  EXPECT_EQ(back.rig.imu_noise.accel_noise, 3e-5);
+  EXPECT_EQ(back.keyframes[2].T_w_b.q.coeffs(), map.keyframes[2].T_w_b.q.coeffs());
+  EXPECT_EQ(back.keyframes[2].bias_accel, map.keyframes[2].bias_accel);
+  EXPECT_EQ(back.keyframes[4].t_ns, 1403636579763555588);
+  EXPECT_EQ(back.points[3].observations[2].px, map.points[3].observations[2].px);
+  EXPECT_EQ(back.points[3].first_t_ns, -5);
+  EXPECT_EQ(back.points[3].sigma_distance_m, map.points[3].sigma_distance_m);
+  EXPECT_EQ(std::memcmp(&back.lines[3].segment_w, &map.lines[3].segment_w, sizeof(Segment3)), 0);
+  EXPECT_EQ(std::memcmp(&back.lines[4].segment_w, &map.lines[4].segment_w, sizeof(Segment3)), 0);
+  EXPECT_EQ(back.lines[4].id, ~std::uint64_t{0});
+  EXPECT_EQ(back.lines[9].observations[3].end_px, map.lines[9].observations[3].end_px);
+  EXPECT_EQ(back.lines[9].constrained, true);
+  EXPECT_EQ(back.lines[9].degenerate, false);
+  EXPECT_EQ(back.lines[8].group, -1);
+  EXPECT_EQ(back.lines[8].last_t_ns, 6);
+  EXPECT_EQ(back.trajectory[29].first, 1403636579763555584 + 29);
+  EXPECT_EQ(back.trajectory[29].second.p, map.trajectory[29].second.p);
+  // All the rest: the map read back makes the same bytes.
+  writeMap(back, path_ + "2");
+  EXPECT_EQ(bytesOf(path_), bytesOf(path_ + "2"));
+}
+
+TEST_F(MapFile, AnEmptyMapIsAFile) {
+  writeMap({}, path_);
+  const LineMap back = readMap(path_);
+  EXPECT_TRUE(back.lines.empty() && back.points.empty() && back.keyframes.empty() && back.trajectory.empty());
+}
+
+TEST_F(MapFile, EveryTruncationIsRefused) {
+  writeMap(sampleMap(), path_);
+  const std::string whole = bytesOf(path_);
+  for (std::size_t size = 0; size < whole.size(); size += 13) {
+    put(path_, whole.substr(0, size));
+    EXPECT_THROW(readMap(path_), MapFileError) << size;
+  }
+  put(path_, whole + "x");
+  EXPECT_THROW(readMap(path_), MapFileError);
+}
+
+TEST_F(MapFile, EveryFlippedBitIsRefused) {
+  writeMap(sampleMap(), path_);
+  const std::string whole = bytesOf(path_);
+  std::mt19937 random(3);
+  for (int i = 0; i < 1500; ++i) {
+    std::string mutated = whole;
+    const std::size_t at = i < 200 ? static_cast<std::size_t>(i) % whole.size() : random() % whole.size();
+    mutated[at] = static_cast<char>(mutated[at] ^ (1 << random() % 8));
+    put(path_, mutated);
+    EXPECT_THROW(readMap(path_), MapFileError) << "byte " << at;
+  }
+}
+
+/// Repairs the checksums, so that the mutations reach the decoding behind them.
+std::string withRightChecksums(std::string bytes) {
+  for (std::size_t at = 12; at + 16 <= bytes.size();) {
+    std::uint64_t size;
+    std::memcpy(&size, bytes.data() + at + 4, 8);
+    if (size > bytes.size() - at - 16) break;
+    const auto crc =
+        static_cast<std::uint32_t>(crc32_z(0, reinterpret_cast<const Bytef*>(bytes.data() + at), 12 + size));
+    std::memcpy(bytes.data() + at + 12 + size, &crc, 4);
+    at += 16 + size;
+  }
+  return bytes;
+}
+
+TEST_F(MapFile, MutationsWithRightChecksumsNeverCrash) {
+  writeMap(sampleMap(), path_);
+  const std::string whole = bytesOf(path_);
+  ASSERT_EQ(withRightChecksums(whole), whole);
+  std::mt19937 random(5);
+  int refused = 0;
+  for (int i = 0; i < 3000; ++i) {
+    std::string mutated = whole;
+    const std::uint32_t changes = 1 + random() % 4;
+    for (std::uint32_t k = 0; k < changes; ++k) {
+      const std::size_t at = random() % whole.size();
+      const char values[] = {0, 1, char(0x7f), char(0x80), char(0xff), static_cast<char>(random())};
+      std::fill_n(mutated.begin() + static_cast<std::ptrdiff_t>(at),
+                  std::min<std::size_t>(1 + random() % 8, whole.size() - at), values[random() % 6]);
+    }
+    put(path_, withRightChecksums(mutated));
+    try {
+      const LineMap map = readMap(path_);
+      EXPECT_LE(map.lines.size(), whole.size());
+    } catch (const MapFileError&) {
+      ++refused;
+    }
+  }
+  EXPECT_GT(refused, 100);
+}
+
+TEST_F(MapFile, UnknownSectionsAreSkipped) {
+  writeMap(sampleMap(), path_);
+  const std::string whole = bytesOf(path_);
+  std::string later =
+      whole.substr(0, 12) + "NEWS" + std::string("\5\0\0\0\0\0\0\0", 8) + "hello" + "crc!" + whole.substr(12);
+  later = withRightChecksums(later);
+  put(path_, later);
+  writeMap(readMap(path_), path_);
+  EXPECT_EQ(bytesOf(path_), whole);
+}
+
+TEST_F(MapFile, ALaterVersionAndOtherFilesAreNamed) {
+  writeMap({}, path_);
+  std::string bytes = bytesOf(path_);
+  bytes[8] = 9;
+  put(path_, bytes);
+  const auto message = [](const std::string& path) -> std::string {
+    try {
+      readMap(path);
+      return "read";
+    } catch (const MapFileError& error) {
+      return error.what();
+    }
+  };
+  EXPECT_NE(message(path_).find("format 9"), std::string::npos);
+  EXPECT_NE(message(folder_.string()).find(folder_.string()), std::string::npos);
+  EXPECT_NE(message(path_ + ".missing").find("No such file"), std::string::npos);
+  put(path_, "id,x0,y0\n");
+  EXPECT_NE(message(path_).find("does not begin"), std::string::npos);
+}
+
+TEST_F(MapFile, AFailedWriteLeavesTheOldFileAndNothingElse) {
+  EXPECT_THROW(writeMap({}, (folder_ / "missing" / "map.lintel").string()), MapFileError);
+  EXPECT_THROW(writeMap({}, folder_.string()), MapFileError);
+  EXPECT_THROW(writeMap(sampleMap(), "/dev/full"), MapFileError);
+  EXPECT_EQ(filesInFolder(), 0u);
+  writeMap(sampleMap(), path_);
+  EXPECT_EQ(filesInFolder(), 1u);
+}
+
+}  // namespace
+}  // namespace lintel
