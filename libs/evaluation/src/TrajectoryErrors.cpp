@@ -17,7 +17,8 @@ struct Positions {
   std::vector<Eigen::Vector3d> estimate, truth;
 };
 
-Positions positionsOf(const Trajectory& estimate, const Trajectory& groundtruth, const std::vector<PosePair>& pairs) {
+Positions positionsOf(const StampedPoses& estimate, const StampedPoses& groundtruth,
+                      const std::vector<PosePair>& pairs) {
   Positions positions;
   for (const PosePair& pair : pairs) {
     positions.estimate.push_back(estimate[pair.estimate].second.p);
@@ -34,7 +35,7 @@ std::vector<double> distancesAfter(const Similarity& S_truth_estimate, const Pos
 }
 
 /// Fills in what part of the ground truth the estimate covers: between neighbouring pairs, unless they are far apart.
-void addCoverage(TrajectoryErrors& result, const Trajectory& groundtruth, const std::vector<PosePair>& pairs,
+void addCoverage(TrajectoryErrors& result, const StampedPoses& groundtruth, const std::vector<PosePair>& pairs,
                  double max_gap_s) {
   std::vector<double> path_m(groundtruth.size(), 0.0);
   for (std::size_t i = 1; i < groundtruth.size(); ++i)
@@ -55,7 +56,7 @@ void addCoverage(TrajectoryErrors& result, const Trajectory& groundtruth, const 
 }
 
 /// Fills in what needs orientations: rotation errors after alignment, and relative errors.
-void addPoseErrors(TrajectoryErrors& result, const Trajectory& estimate, const Trajectory& groundtruth,
+void addPoseErrors(TrajectoryErrors& result, const StampedPoses& estimate, const StampedPoses& groundtruth,
                    const std::vector<PosePair>& pairs, const TrajectoryErrorParams& params) {
   std::vector<PartneredPose> poses;
   std::vector<double> rotations_rad;
@@ -72,7 +73,8 @@ void addPoseErrors(TrajectoryErrors& result, const Trajectory& estimate, const T
 
 }  // namespace
 
-std::vector<PosePair> associate(const Trajectory& estimate, const Trajectory& groundtruth, double max_difference_s) {
+std::vector<PosePair> associate(const StampedPoses& estimate, const StampedPoses& groundtruth,
+                                double max_difference_s) {
   std::vector<PosePair> pairs;
   const std::int64_t max_difference_ns = std::llround(max_difference_s * 1e9);
   for (std::size_t i = 0; i < estimate.size(); ++i) {
@@ -91,7 +93,7 @@ std::vector<PosePair> associate(const Trajectory& estimate, const Trajectory& gr
   return pairs;
 }
 
-TrajectoryErrors evaluateTrajectory(const Trajectory& estimate, const Trajectory& groundtruth,
+TrajectoryErrors evaluateTrajectory(const StampedPoses& estimate, const StampedPoses& groundtruth,
                                     const TrajectoryErrorParams& params) {
   const std::vector<PosePair> pairs = associate(estimate, groundtruth, params.max_difference_s);
   if (pairs.size() < 3)

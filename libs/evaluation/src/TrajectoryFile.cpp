@@ -26,9 +26,9 @@ std::pair<std::int64_t, Pose> stampedPoseOf(const TextRows& rows, bool is_euroc)
 
 }  // namespace
 
-Trajectory readTrajectory(const std::string& path) {
+StampedPoses readTrajectory(const std::string& path) {
   TextRows rows(path);
-  Trajectory trajectory;
+  StampedPoses trajectory;
   bool is_euroc = false;
   while (rows.next()) {
     if (trajectory.empty()) is_euroc = rows.commaSeparated();

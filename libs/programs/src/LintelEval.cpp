@@ -52,8 +52,8 @@ class LintelEval {
   }
 
   TrajectoryErrors evaluate() const {
-    const Trajectory estimate = readTrajectory(trajectory_);
-    const Trajectory groundtruth = readTrajectory(groundtruth_);
+    const StampedPoses estimate = readTrajectory(trajectory_);
+    const StampedPoses groundtruth = readTrajectory(groundtruth_);
     try {
       return evaluateTrajectory(estimate, groundtruth, params_);
     } catch (const EvaluationError& error) {

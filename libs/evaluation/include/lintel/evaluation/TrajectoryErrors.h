@@ -25,7 +25,7 @@ struct PosePair {
 
 /// For every estimated pose the nearest true one in time (of two equally near, the earlier one), if there is one
 /// within `max_difference_s`.
-std::vector<PosePair> associate(const Trajectory& estimate, const Trajectory& groundtruth, double max_difference_s);
+std::vector<PosePair> associate(const StampedPoses& estimate, const StampedPoses& groundtruth, double max_difference_s);
 
 /// How far the estimated motion over stretches of the true path differs from the true motion, seen from the start of
 /// each stretch: (T_w_b0⁻¹ T_w_b1)_true⁻¹ (T_w_b0⁻¹ T_w_b1)_estimated [Geiger2012]. Every pair starts a stretch.
@@ -55,7 +55,7 @@ struct TrajectoryErrors {
 };
 
 /// Throws EvaluationError when fewer than three poses have a true partner.
-TrajectoryErrors evaluateTrajectory(const Trajectory& estimate, const Trajectory& groundtruth,
+TrajectoryErrors evaluateTrajectory(const StampedPoses& estimate, const StampedPoses& groundtruth,
                                     const TrajectoryErrorParams& params = {});
 
 }  // namespace lintel

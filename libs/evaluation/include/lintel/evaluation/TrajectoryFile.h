@@ -18,7 +18,7 @@ class EvaluationError : public std::runtime_error {
 };
 
 /// (time [ns], T_w_b), times never descending (a system that was reset may give two poses for one time).
-using Trajectory = std::vector<std::pair<std::int64_t, Pose>>;
+using StampedPoses = std::vector<std::pair<std::int64_t, Pose>>;
 
 /// Reads a trajectory in one of two forms, told apart by the first row; lines that start with # are comments:
 ///   TUM:   `t x y z qx qy qz qw`, t in seconds, separated by blanks
@@ -26,6 +26,6 @@ using Trajectory = std::vector<std::pair<std::int64_t, Pose>>;
 ///   (state_groundtruth_estimate0/data.csv)
 /// Positions in metres; quaternions are normalised. Times are kept to the nanosecond.
 /// Throws EvaluationError on an unreadable file, a malformed row, or a time that goes back.
-Trajectory readTrajectory(const std::string& path);
+StampedPoses readTrajectory(const std::string& path);
 
 }  // namespace lintel
