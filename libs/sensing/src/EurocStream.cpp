@@ -11,10 +11,10 @@ void ignoreFault(Fault, const std::string&) {}
 
 }  // namespace
 
-EurocStream::EurocStream(const std::string& path)
+EurocStream::EurocStream(const std::string& path, const RecordingParams& params)
     : mav0_(findMav0(path)),
-      camera_folder_(mav0_ + "/cam0"),
-      imu_folder_(mav0_ + "/imu0"),
+      camera_folder_(mav0_ + "/" + (params.camera.empty() ? "cam0" : params.camera)),
+      imu_folder_(mav0_ + "/" + (params.imu.empty() ? "imu0" : params.imu)),
       rig_(rigOf(loadEurocCamera(camera_folder_ + "/sensor.yaml"), loadEurocImu(imu_folder_ + "/sensor.yaml"))),
       images_(camera_folder_),
       imu_(imu_folder_) {

@@ -6,11 +6,11 @@
 
 namespace lintel {
 
-/// cam0 and imu0 of an EuRoC folder.
+/// One camera and the IMU of an EuRoC folder.
 class EurocStream final : public SensorStream {
  public:
   /// Throws RecordingError.
-  explicit EurocStream(const std::string& path);
+  EurocStream(const std::string& path, const RecordingParams& params);
 
   const Rig& rig() const override { return rig_; }
   const std::string& path() const override { return mav0_; }

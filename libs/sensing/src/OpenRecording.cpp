@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <cmath>
+#include <filesystem>
 
 #include "EurocStream.h"
+#include "RawlogStream.h"
 #include "StreamRecording.h"
 
 namespace lintel {
@@ -19,7 +21,12 @@ void checkParams(const RecordingParams& params) {
 
 std::unique_ptr<Recording> openRecording(const std::string& path, const RecordingParams& params) {
   checkParams(params);
-  return std::make_unique<StreamRecording>(std::make_unique<EurocStream>(path), params);
+  std::error_code ignored;
+  if (std::filesystem::is_directory(path, ignored))
+    return std::make_unique<StreamRecording>(std::make_unique<EurocStream>(path, params), params);
+  if (!std::filesystem::exists(path, ignored))
+    throw RecordingError(path + ": does not exist: give an EuRoC folder or a .rawlog");
+  return std::make_unique<StreamRecording>(std::make_unique<RawlogStream>(path, params), params);
 }
 
 }  // namespace lintel

@@ -6,6 +6,7 @@
 #include <optional>
 #include <stdexcept>
 #include <string>
+#include <vector>
 
 #include "Warnings.h"
 #include "lintel/sensing/Recording.h"
@@ -31,6 +32,9 @@ class SensorStream {
 
   virtual const Rig& rig() const = 0;
   virtual const std::string& path() const = 0;
+
+  /// Faults met when the stream was opened.
+  virtual std::vector<Warning> openingWarnings() const { return {}; }
 
   /// Frames that nextFrame will deliver, if known; else 0. Independent of the stream's position.
   virtual std::size_t countFrames(const RecordingParams& params) const = 0;

@@ -7,6 +7,7 @@ StreamRecording::StreamRecording(std::unique_ptr<SensorStream> stream, const Rec
     : rig_(stream->rig()),
       expected_frames_(stream->countFrames(params)),
       capacity_(params.frames_ahead),
+      log_(stream->openingWarnings()),
       producer_(std::move(stream), params) {}
 
 StreamRecording::~StreamRecording() {

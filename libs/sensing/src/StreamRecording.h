@@ -24,9 +24,6 @@ class StreamRecording final : public Recording {
   std::size_t expectedFrames() const override { return expected_frames_; }
   std::vector<std::string> warnings() const override { return log_.lines(); }
 
-  /// Notes a fault met before the stream began.
-  void note(const Warning& warning) { log_.add(warning); }
-
  private:
   struct Item {
     Step step;
@@ -40,8 +37,8 @@ class StreamRecording final : public Recording {
 
   Rig rig_;
   std::size_t expected_frames_, capacity_;
-  StepProducer producer_;
   WarningLog log_;
+  StepProducer producer_;
   bool finished_ = false;
 
   std::thread thread_;

@@ -23,6 +23,9 @@ using WarningSink = std::function<void(Fault, std::string)>;
 /// Collects warnings: the first few of a kind in full, of the rest the count, so that it never grows.
 class WarningLog {
  public:
+  explicit WarningLog(const std::vector<Warning>& warnings = {}) {
+    for (const Warning& warning : warnings) add(warning);
+  }
   void add(const Warning& warning);
   std::vector<std::string> lines() const;
 

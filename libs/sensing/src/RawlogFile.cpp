@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "RawlogFile.h"
+
+#include <mrpt/obs/CObservation.h>
+#include <mrpt/obs/CSensoryFrame.h>
+#include <mrpt/serialization/CArchive.h>
+
+#include "GzStream.h"
+#include "RawlogTime.h"
+#include "lintel/sensing/Recording.h"
+
+namespace lintel {
+namespace {
+
+/// Null at a clean end; anything thrown means damage.
+mrpt::serialization::CSerializable::Ptr readObject(GzInput& stream) {
+  auto archive = mrpt::serialization::archiveFrom(stream);
+  const std::uint64_t begin = stream.bytesRead();
+  try {
+    return archive.ReadObject();
+  } catch (const mrpt::serialization::CExceptionEOF&) {
+    if (stream.bytesRead() != begin || stream.damaged()) throw;
+    return nullptr;
+  }
+}
+
+}  // namespace
+
+RawlogFile::RawlogFile(const std::string& path) : path_(path), stream_(std::make_unique<GzInput>(path)) {}
+
+RawlogFile::~RawlogFile() = default;
+
+std::string RawlogFile::where() const { return path_ + ": entry " + std::to_string(entries_ > 0 ? entries_ - 1 : 0); }
+
+std::shared_ptr<mrpt::obs::CObservation> RawlogFile::next() {
+  while (pending_.empty()) {
+    mrpt::serialization::CSerializable::Ptr object;
+    try {
+      object = readObject(*stream_);
+    } catch (const std::exception&) {  // its text is a stack trace
+      if (entries_ == 0) throw RecordingError(path_ + ": not a rawlog, or its beginning is damaged: make it anew");
+      throw RecordingError(path_ + ": cut or damaged after " + std::to_string(entries_) +
+                           " entries: make it anew or repair it with rawlog-edit --cut --to-index");
+    }
+    if (!object) return nullptr;
+    ++entries_;
+    if (auto observation = std::dynamic_pointer_cast<mrpt::obs::CObservation>(object)) return observation;
+    if (const auto frame = std::dynamic_pointer_cast<mrpt::obs::CSensoryFrame>(object))
+      pending_.assign(frame->begin(), frame->end());
+  }
+  auto observation = pending_.front();
+  pending_.pop_front();
+  return observation;
+}
+
+std::int64_t timeOf(const mrpt::obs::CObservation& observation) { return fromRawlogTime(observation.timestamp); }
+
+}  // namespace lintel

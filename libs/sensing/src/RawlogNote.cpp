@@ -1,0 +1,65 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "RawlogNote.h"
+
+#include <yaml-cpp/yaml.h>
+
+#include <charconv>
+#include <cmath>
+
+#include "lintel/sensing/Recording.h"
+
+namespace lintel {
+namespace {
+
+constexpr const char* kTitle = "# Lintel recording: what MRPT observations have no fields for\n";
+
+/// The shortest text that reads back as the same double.
+std::string exact(double value) {
+  char text[32];
+  return {text, std::to_chars(text, text + sizeof text, value).ptr};
+}
+
+double positive(const YAML::Node& node, const std::string& key, const std::string& where) {
+  const double value = node[key] ? node[key].as<double>() : 0.0;
+  if (!std::isfinite(value) || value <= 0)
+    throw RecordingError(where + ": " + key + " of the note must be greater than 0");
+  return value;
+}
+
+RawlogNote fromYaml(const YAML::Node& root, const std::string& where) {
+  RawlogNote note;
+  const YAML::Node imu = root["imu"];
+  note.imu_rate_hz = positive(imu, "rate_hz", where);
+  note.imu_noise.gyro_noise = positive(imu, "gyroscope_noise_density", where);
+  note.imu_noise.gyro_walk = positive(imu, "gyroscope_random_walk", where);
+  note.imu_noise.accel_noise = positive(imu, "accelerometer_noise_density", where);
+  note.imu_noise.accel_walk = positive(imu, "accelerometer_random_walk", where);
+  for (const auto& camera : root["cameras"])
+    note.camera_rates_hz[camera.first.as<std::string>()] = positive(camera.second, "rate_hz", where);
+  return note;
+}
+
+}  // namespace
+
+std::string formatNote(const RawlogNote& note) {
+  std::string text = kTitle;
+  text += "imu:\n  rate_hz: " + exact(note.imu_rate_hz);
+  text += "\n  gyroscope_noise_density: " + exact(note.imu_noise.gyro_noise) + "  # rad/s/sqrt(Hz)";
+  text += "\n  gyroscope_random_walk: " + exact(note.imu_noise.gyro_walk) + "  # rad/s^2/sqrt(Hz)";
+  text += "\n  accelerometer_noise_density: " + exact(note.imu_noise.accel_noise) + "  # m/s^2/sqrt(Hz)";
+  text += "\n  accelerometer_random_walk: " + exact(note.imu_noise.accel_walk) + "  # m/s^3/sqrt(Hz)\ncameras:\n";
+  for (const auto& [label, rate_hz] : note.camera_rates_hz)
+    text += "  " + label + ": {rate_hz: " + exact(rate_hz) + "}\n";
+  return text;
+}
+
+std::optional<RawlogNote> parseNote(const std::string& text, const std::string& where) {
+  if (text.rfind(kTitle, 0) != 0) return std::nullopt;
+  try {
+    return fromYaml(YAML::Load(text), where);
+  } catch (const YAML::Exception& e) {
+    throw RecordingError(where + ": damaged note: line " + std::to_string(e.mark.line + 1) + ": " + e.msg);
+  }
+}
+
+}  // namespace lintel

@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <map>
+#include <optional>
+#include <string>
+
+#include "lintel/sensing/Rig.h"
+
+namespace lintel {
+
+/// What MRPT's observations have no fields for. It stands as YAML in a CObservationComment at the head of a rawlog.
+/// (MRPT does not store a comment's label: rawlog-edit --keep-label drops it, as --cut drops what comes first. The
+/// reader then takes rates from the time stamps, assumes a noise and says so.)
+struct RawlogNote {
+  std::map<std::string, double> camera_rates_hz;  ///< by sensor label
+  ImuNoise imu_noise;
+  double imu_rate_hz = 0;
+};
+
+/// Numbers are written so that they read back exactly.
+std::string formatNote(const RawlogNote& note);
+
+/// Empty when the text is somebody else's comment. Throws RecordingError naming `where` when it is ours but damaged.
+std::optional<RawlogNote> parseNote(const std::string& text, const std::string& where);
+
+}  // namespace lintel

@@ -1,0 +1,194 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "RawlogSources.h"
+
+#include <mrpt/obs/CObservationComment.h>
+#include <mrpt/obs/CObservationIMU.h>
+#include <mrpt/obs/CObservationImage.h>
+#include <mrpt/obs/CObservationRobotPose.h>
+
+#include <algorithm>
+#include <filesystem>
+
+#include "ImageFile.h"
+#include "RawlogTime.h"
+#include "SensorStream.h"
+
+namespace lintel {
+namespace {
+
+namespace fs = std::filesystem;
+using mrpt::obs::CObservation;
+
+mrpt::poses::CPose3D toMrpt(const Pose& pose) {
+  const mrpt::math::CQuaternionDouble q(pose.q.w(), pose.q.x(), pose.q.y(), pose.q.z());
+  return {q, pose.p.x(), pose.p.y(), pose.p.z()};
+}
+
+mrpt::img::TCamera toMrpt(const PinholeRadtan& camera, const std::string& name) {
+  mrpt::img::TCamera params;
+  params.ncols = static_cast<std::uint32_t>(camera.width);
+  params.nrows = static_cast<std::uint32_t>(camera.height);
+  params.setIntrinsicParamsFromValues(camera.fx, camera.fy, camera.cx, camera.cy);
+  params.setDistortionPlumbBob(camera.k1, camera.k2, camera.p1, camera.p2);
+  params.cameraName = name;
+  return params;
+}
+
+template <class Observation>
+std::shared_ptr<Observation> stamped(const std::string& label, std::int64_t t_ns) {
+  auto observation = Observation::Create();
+  observation->sensorLabel = label;
+  observation->timestamp = toRawlogTime(t_ns);
+  return observation;
+}
+
+class ImageSource final : public RawlogSource {
+ public:
+  ImageSource(const std::string& folder, std::string label, const EurocCamera& camera, ImagePlacer* placer)
+      : list_(folder),
+        label_(std::move(label)),
+        params_(toMrpt(camera.model, label_)),
+        pose_(toMrpt(camera.T_v_c)),
+        placer_(placer) {}
+
+  bool advance(const WarningSink& warn) override {
+    const auto next = list_.next(warn);
+    if (next) entry_ = *next;
+    return next.has_value();
+  }
+
+  std::int64_t t_ns() const override { return entry_.t_ns; }
+
+  CObservation::Ptr make(const WarningSink& warn) override {
+    auto observation = stamped<mrpt::obs::CObservationImage>(label_, entry_.t_ns);
+    observation->cameraParams = params_;
+    observation->cameraPose = pose_;
+    try {
+      if (placer_)
+        link(observation->image);
+      else
+        embed(observation->image);
+    } catch (const ImageFault& fault) {
+      warn(Fault::Image, std::string(fault.what()) + ": left out");
+      return nullptr;
+    }
+    return observation;
+  }
+
+ private:
+  void link(mrpt::img::CImage& image) {
+    std::error_code ignored;
+    if (!fs::exists(entry_.path, ignored)) throw ImageFault(entry_.path + ": image file missing");
+    const std::string name = label_ + "_" + fs::path(entry_.path).filename().string();
+    placer_->place(entry_.path, name);
+    image.setExternalStorage(name);
+  }
+
+  void embed(mrpt::img::CImage& image) const {
+    const GrayImage gray = readGrayImage(entry_.path);
+    image.resize(static_cast<std::size_t>(gray.width), static_cast<std::size_t>(gray.height), mrpt::img::CH_GRAY);
+    for (int row = 0; row < gray.height; ++row)
+      std::copy_n(gray.pixels.data() + static_cast<std::ptrdiff_t>(row) * gray.width, gray.width,
+                  image.ptrLine<std::uint8_t>(static_cast<unsigned>(row)));
+  }
+
+  EurocImageList list_;
+  std::string label_;
+  mrpt::img::TCamera params_;
+  mrpt::poses::CPose3D pose_;
+  ImagePlacer* placer_;
+  ImageEntry entry_;
+};
+
+class ImuSource final : public RawlogSource {
+ public:
+  ImuSource(const std::string& folder, std::string label, const EurocImu& imu)
+      : list_(folder), label_(std::move(label)), pose_(toMrpt(imu.T_v_b)) {}
+
+  bool advance(const WarningSink& warn) override {
+    const auto next = list_.next(warn);
+    if (next) sample_ = *next;
+    return next.has_value();
+  }
+
+  std::int64_t t_ns() const override { return sample_.t_ns; }
+
+  CObservation::Ptr make(const WarningSink&) override {
+    using namespace mrpt::obs;
+    auto observation = stamped<CObservationIMU>(label_, sample_.t_ns);
+    observation->sensorPose = pose_;
+    observation->set(IMU_WX, sample_.gyro.x());
+    observation->set(IMU_WY, sample_.gyro.y());
+    observation->set(IMU_WZ, sample_.gyro.z());
+    observation->set(IMU_X_ACC, sample_.accel.x());
+    observation->set(IMU_Y_ACC, sample_.accel.y());
+    observation->set(IMU_Z_ACC, sample_.accel.z());
+    return observation;
+  }
+
+ private:
+  EurocImuList list_;
+  std::string label_;
+  mrpt::poses::CPose3D pose_;
+  ImuSample sample_;
+};
+
+class GroundtruthSource final : public RawlogSource {
+ public:
+  explicit GroundtruthSource(const std::string& csv) : csv_(csv, 8) {}
+
+  bool advance(const WarningSink& warn) override {
+    while (csv_.next(warn)) {
+      double v[7];
+      if (!csv_.numbers(1, 7, v, warn)) continue;
+      const Eigen::Quaterniond q(v[3], v[4], v[5], v[6]);
+      pose_ = {q.normalized(), {v[0], v[1], v[2]}};
+      t_ns_ = cutToTick(csv_.time_ns());
+      const auto where = [this] { return csv_.where(); };
+      if (pose_.p.allFinite() && q.coeffs().allFinite() && q.norm() > 0.5) {
+        if (gate_.admit(t_ns_, where, warn)) return true;
+      } else {
+        warn(Fault::Other, where() + ": true pose is not finite: left out");
+      }
+    }
+    return false;
+  }
+
+  std::int64_t t_ns() const override { return t_ns_; }
+
+  CObservation::Ptr make(const WarningSink&) override {
+    auto observation = stamped<mrpt::obs::CObservationRobotPose>("groundtruth", t_ns_);
+    observation->pose.mean = toMrpt(pose_);
+    return observation;
+  }
+
+ private:
+  CsvReader csv_;
+  StampGate gate_{"true pose", Fault::Other};
+  Pose pose_;
+  std::int64_t t_ns_ = 0;
+};
+
+}  // namespace
+
+std::unique_ptr<RawlogSource> makeImageSource(const std::string& folder, const std::string& label,
+                                              const EurocCamera& camera, ImagePlacer* placer) {
+  return std::make_unique<ImageSource>(folder, label, camera, placer);
+}
+
+std::unique_ptr<RawlogSource> makeImuSource(const std::string& folder, const std::string& label, const EurocImu& imu) {
+  return std::make_unique<ImuSource>(folder, label, imu);
+}
+
+std::unique_ptr<RawlogSource> makeGroundtruthSource(const std::string& csv) {
+  return std::make_unique<GroundtruthSource>(csv);
+}
+
+std::shared_ptr<CObservation> makeComment(const std::string& text, std::int64_t t_ns) {
+  // It would stamp itself "now" and so stretch the recording over years.
+  auto comment = stamped<mrpt::obs::CObservationComment>("", t_ns);
+  comment->text = text;
+  return comment;
+}
+
+}  // namespace lintel
