@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <opencv2/imgproc.hpp>
 
 #include "DistanceGrid.h"
 
@@ -16,6 +15,46 @@ struct Candidate {
   int x, y;
   float response;
 };
+
+/// Sums of a row's derivative products over three columns, stored in xx[1 .. columns - 2].
+struct RowSums {
+  explicit RowSums(int columns) : xx(columns), xy(columns), yy(columns), pxx(columns), pxy(columns), pyy(columns) {}
+
+  void set(const short* dxdy, int columns) {
+    for (int x = 0; x < columns; ++x) {
+      const float dx = dxdy[2 * x], dy = dxdy[2 * x + 1];
+      pxx[x] = dx * dx;
+      pxy[x] = dx * dy;
+      pyy[x] = dy * dy;
+    }
+    for (int x = 1; x < columns - 1; ++x) {
+      xx[x] = pxx[x - 1] + pxx[x] + pxx[x + 1];
+      xy[x] = pxy[x - 1] + pxy[x] + pxy[x + 1];
+      yy[x] = pyy[x - 1] + pyy[x] + pyy[x + 1];
+    }
+  }
+
+  std::vector<float> xx, xy, yy, pxx, pxy, pyy;
+};
+
+/// Smaller eigenvalue of the structure tensor over 3x3 pixels (Shi and Tomasi's response); 0 on the outermost pixels.
+cv::Mat cornerResponse(const cv::Mat& derivative) {
+  const int rows = derivative.rows, columns = derivative.cols;
+  cv::Mat response(rows, columns, CV_32F, cv::Scalar(0));
+  std::vector<RowSums> ring(3, RowSums(columns));
+  for (int y = 0; y < rows; ++y) {
+    ring[static_cast<std::size_t>(y % 3)].set(derivative.ptr<short>(y), columns);
+    if (y < 2) continue;
+    float* out = response.ptr<float>(y - 1);
+    const RowSums &a = ring[0], &b = ring[1], &c = ring[2];
+    for (int x = 1; x < columns - 1; ++x) {
+      const float xx = a.xx[x] + b.xx[x] + c.xx[x], yy = a.yy[x] + b.yy[x] + c.yy[x], xy = a.xy[x] + b.xy[x] + c.xy[x];
+      const float half = 0.5f * (xx - yy);
+      out[x] = 0.5f * (xx + yy) - std::sqrt(half * half + xy * xy);
+    }
+  }
+  return response;
+}
 
 /// The strongest pixel of every block, when it is a local maximum.
 std::vector<Candidate> blockMaxima(const cv::Mat& response, int border, float threshold) {
@@ -40,49 +79,57 @@ std::vector<Candidate> blockMaxima(const cv::Mat& response, int border, float th
 
 }  // namespace
 
-std::vector<cv::Point2f> CornerDetector::detect(const cv::Mat& image, const std::vector<cv::Point2f>& taken,
+std::vector<cv::Point2f> CornerDetector::candidates(const ImagePyramid& pyramid) const {
+  // Half resolution: a quarter of the work, less noise, and KLT follows the patch, not the pixel.
+  const int level = std::min(1, pyramid.levels() - 1);
+  const int scale = 1 << level;
+  const cv::Mat response = cornerResponse(pyramid.derivative(level));
+  float strongest = 0;
+  for (int y = 0; y < response.rows; ++y)
+    strongest = std::max(strongest, *std::max_element(response.ptr<float>(y), response.ptr<float>(y) + response.cols));
+  const int border = params_.border_px / scale + 2;
+  std::vector<Candidate> maxima = blockMaxima(response, border, static_cast<float>(params_.min_quality) * strongest);
+  std::sort(maxima.begin(), maxima.end(), [](const Candidate& a, const Candidate& b) {
+    return a.response != b.response ? a.response > b.response : (a.y != b.y ? a.y < b.y : a.x < b.x);
+  });
+  std::vector<cv::Point2f> px;
+  px.reserve(maxima.size());
+  for (const Candidate& c : maxima) px.emplace_back(static_cast<float>(scale * c.x), static_cast<float>(scale * c.y));
+  return px;
+}
+
+std::vector<cv::Point2f> CornerDetector::detect(const ImagePyramid& pyramid, const std::vector<cv::Point2f>& taken,
                                                 int wanted) const {
   std::vector<cv::Point2f> found;
   if (wanted <= 0) return found;
-  cv::Mat response;
-  cv::cornerMinEigenVal(image, response, 3, 3);
-  double strongest = 0;
-  cv::minMaxLoc(response, nullptr, &strongest);
-  const int border = std::max(params_.border_px + 1, 2);
-  std::vector<Candidate> candidates =
-      blockMaxima(response, border, static_cast<float>(params_.min_quality * strongest));
-  std::sort(candidates.begin(), candidates.end(), [](const Candidate& a, const Candidate& b) {
-    return a.response != b.response ? a.response > b.response : (a.y != b.y ? a.y < b.y : a.x < b.x);
-  });
-
-  DistanceGrid occupied(image.cols, image.rows, params_.min_distance_px);
+  const cv::Size size = pyramid.image().size();
+  DistanceGrid occupied(size.width, size.height, params_.min_distance_px);
   // Cells of the size that gives every point one; a cell's turn comes when no candidate is left in emptier cells.
-  const double cell = std::sqrt(static_cast<double>(image.cols) * image.rows / params_.max_points);
-  const int columns = static_cast<int>(image.cols / cell) + 1, rows = static_cast<int>(image.rows / cell) + 1;
+  const double cell = std::sqrt(static_cast<double>(size.area()) / params_.max_points);
+  const int columns = static_cast<int>(size.width / cell) + 1, rows = static_cast<int>(size.height / cell) + 1;
   std::vector<int> in_cell(static_cast<std::size_t>(columns * rows), 0);
-  const auto cellOf = [&](float x, float y) {
-    return static_cast<std::size_t>(static_cast<int>(y / cell) * columns + static_cast<int>(x / cell));
+  const auto countAt = [&](const cv::Point2f& p) -> int& {
+    return in_cell[static_cast<std::size_t>(static_cast<int>(p.y / cell) * columns + static_cast<int>(p.x / cell))];
   };
   for (const cv::Point2f& p : taken) {
     occupied.insert(p);
-    ++in_cell[cellOf(p.x, p.y)];
+    ++countAt(p);
   }
-  for (int turn = 0; !candidates.empty() && static_cast<int>(found.size()) < wanted; ++turn) {
-    std::vector<Candidate> later;
-    for (const Candidate& c : candidates) {
-      const cv::Point2f p(static_cast<float>(c.x), static_cast<float>(c.y));
+  std::vector<cv::Point2f> left = candidates(pyramid);
+  for (int turn = 0; !left.empty(); ++turn) {
+    std::vector<cv::Point2f> later;
+    for (const cv::Point2f& p : left) {
       if (!occupied.isFree(p)) continue;
-      int& count = in_cell[cellOf(p.x, p.y)];
-      if (count > turn) {
-        later.push_back(c);
+      if (countAt(p) > turn) {
+        later.push_back(p);
         continue;
       }
-      if (static_cast<int>(found.size()) >= wanted) break;
       occupied.insert(p);
-      ++count;
+      ++countAt(p);
       found.push_back(p);
+      if (static_cast<int>(found.size()) == wanted) return found;
     }
-    candidates = std::move(later);
+    left = std::move(later);
   }
   return found;
 }

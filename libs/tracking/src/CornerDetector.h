@@ -4,6 +4,7 @@
 #include <opencv2/core.hpp>
 #include <vector>
 
+#include "ImagePyramid.h"
 #include "lintel/tracking/FrontEndParams.h"
 
 namespace lintel {
@@ -13,11 +14,14 @@ class CornerDetector {
  public:
   explicit CornerDetector(const PointTrackerParams& params) : params_(params) {}
 
-  /// Up to `wanted` corners of `image` (CV_8U), at least min_distance_px from `taken` and from each other. Cells of the
-  /// image with fewer points come first, then stronger corners.
-  std::vector<cv::Point2f> detect(const cv::Mat& image, const std::vector<cv::Point2f>& taken, int wanted) const;
+  /// Up to `wanted` corners of the current image, at least min_distance_px from `taken` and from each other. Cells of
+  /// the image with fewer points come first, then stronger corners.
+  std::vector<cv::Point2f> detect(const ImagePyramid& pyramid, const std::vector<cv::Point2f>& taken, int wanted) const;
 
  private:
+  /// Local maxima of the corner response, strongest first.
+  std::vector<cv::Point2f> candidates(const ImagePyramid& pyramid) const;
+
   PointTrackerParams params_;
 };
 

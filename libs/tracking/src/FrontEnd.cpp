@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "lintel/tracking/FrontEnd.h"
 
+#include <algorithm>
 #include <stdexcept>
 #include <string>
 
 #include "GyroPrediction.h"
 #include "ImagePyramid.h"
+#include "LineTracker.h"
 #include "ParamsCheck.h"
 #include "PointTracker.h"
 #include "StageTimer.h"
@@ -15,14 +17,16 @@ namespace lintel {
 struct FrontEnd::Impl {
   Impl(const Rig& rig_in, const FrontEndParams& params)
       : rig(rig_in),
-        pyramid(params.pyramid, params.points.window_px),
+        pyramid(params.pyramid, std::max(params.points.window_px, params.lines.window_px)),
         gyro(rig, params.points.initial_gyro_bias_sigma),
-        points(rig, params.points) {}
+        points(rig, params.points),
+        lines(params.lines.enabled ? makeLineTracker(rig, params.lines) : nullptr) {}
 
   Rig rig;
   ImagePyramid pyramid;
   GyroPrediction gyro;
   PointTracker points;
+  std::unique_ptr<LineTracker> lines;  ///< null: points alone
   FrontEndStatistics statistics;
   std::int64_t last_t_ns = 0;
 };
@@ -50,12 +54,14 @@ FrameTracks FrontEnd::process(const Frame& frame, const ImuBatch& imu_since_last
   if (!first && !m.gyro.predict(imu_since_last, 1e-9 * static_cast<double>(frame.t_ns - m.last_t_ns)))
     ++m.statistics.frames_without_gyro;
   m.points.process(m.pyramid, m.gyro, m.statistics);
+  if (m.lines) m.lines->process(m.pyramid, m.gyro, m.points.flow(), m.statistics);
 
   ++m.statistics.frames;
   m.last_t_ns = frame.t_ns;
   FrameTracks tracks;
   tracks.t_ns = frame.t_ns;
   tracks.points = m.points.points();
+  if (m.lines) tracks.lines = m.lines->lines();
   return tracks;
 }
 

@@ -16,6 +16,30 @@ void require(const char* name, double value, double low, double high) {
   throw std::invalid_argument(text.str());
 }
 
+void checkLines(const LineTrackerParams& p) {
+  if (p.mode != "flow" && p.mode != "descriptor")
+    throw std::invalid_argument("front end: lines.mode = " + p.mode + ", must be flow or descriptor");
+  if (p.detector != "edge_drawing" && p.detector != "lsd")
+    throw std::invalid_argument("front end: lines.detector = " + p.detector + ", must be edge_drawing or lsd");
+  require("lines.gradient_threshold", p.gradient_threshold, 1, 255);
+  require("lines.detect_every_n", p.detect_every_n, 1, 1000);
+  require("lines.max_lines", p.max_lines, 1, 10000);
+  require("lines.min_length_px", p.min_length_px, 20, 10000);
+  require("lines.keep_length_px", p.keep_length_px, 16, p.min_length_px);
+  require("lines.window_px", p.window_px, 5, 51);
+  require("lines.flow_levels", p.flow_levels, 1, 8);
+  require("lines.max_iterations", p.max_iterations, 1, 1000);
+  require("lines.min_samples", p.min_samples, 3, 100);
+  require("lines.max_samples", p.max_samples, p.min_samples, 100);
+  require("lines.refine_px", p.refine_px, 0.5, 8);
+  require("lines.grow_px", p.grow_px, 0, 1000);
+  require("lines.merge_angle_rad", p.merge_angle_rad, 0.001, 1);
+  require("lines.merge_distance_px", p.merge_distance_px, 0.1, 100);
+  require("lines.max_frames_without_detection", p.max_frames_without_detection, 0, 1000000);
+  require("lines.border_px", p.border_px, 1, 100);
+  require("lines.descriptor_distance", p.descriptor_distance, 0, 256);
+}
+
 }  // namespace
 
 void checkParams(const Rig& rig, const FrontEndParams& params) {
@@ -36,6 +60,7 @@ void checkParams(const Rig& rig, const FrontEndParams& params) {
   require("points.epipolar_px", p.epipolar_px, 0.01, 1000);
   require("points.border_px", p.border_px, 0, 100);
   require("points.initial_gyro_bias_sigma", p.initial_gyro_bias_sigma, 1e-6, 10);
+  checkLines(params.lines);
 }
 
 void checkFrame(const Rig& rig, const Frame& frame) {

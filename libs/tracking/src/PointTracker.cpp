@@ -133,7 +133,7 @@ void PointTracker::accept(const Followed& followed, const GyroPrediction& gyro, 
 
 void PointTracker::addNew(const ImagePyramid& pyramid, PointStatistics& statistics) {
   const int wanted = params_.max_points - static_cast<int>(points_.size());
-  for (const cv::Point2f& px : detector_.detect(pyramid.image(), pixels(), wanted)) {
+  for (const cv::Point2f& px : detector_.detect(pyramid, pixels(), wanted)) {
     PointObservation p;
     p.id = next_id_++;
     p.px = {px.x, px.y};

@@ -25,7 +25,7 @@ struct PointTrackerParams {
   double min_distance_px = 25;  ///< between points when new ones are chosen
   double min_quality = 0.01;    ///< smallest corner response, as a share of the image's strongest
   int detect_every_n = 2;       ///< frames between searches for new corners; 2 = the estimator's rate at 20 Hz images
-  int window_px = 21;           ///< side of the KLT patch
+  int window_px = 13;           ///< side of the KLT patch
   int max_iterations = 20;      ///< of KLT, per level
   double forward_backward_px = 0.5;      ///< largest return error of a track followed back to the frame before
   double epipolar_px = 1.0;              ///< largest distance from the epipolar line between consecutive frames
@@ -47,15 +47,66 @@ struct PointTrackerParams {
   }
 };
 
+/// Lines: detected segments, carried from frame to frame [Lim2021, line tracking].
+struct LineTrackerParams {
+  bool enabled = true;  ///< false: points alone
+  std::string mode =
+      "flow";  ///< flow: predicted by optical flow, merged with detections; descriptor: LBD matches alone (baseline)
+  std::string detector = "edge_drawing";  ///< edge_drawing or lsd (slower); both at half resolution
+  int gradient_threshold = 24;            ///< of edge_drawing: Sobel response an edge must have
+  int detect_every_n = 2;                 ///< frames between detections; 2 = the estimator's rate at 20 Hz images
+  int max_lines = 100;                    ///< lines held at once; older, then longer ones first
+  double min_length_px = 50;              ///< of a new line [Lim2021: 50 px]
+  double keep_length_px = 30;             ///< a tracked line that gets shorter is lost
+  int window_px = 13;                     ///< side of the KLT patch of a sample on a line
+  int flow_levels = 3;                    ///< pyramid levels for the samples
+  int max_iterations = 10;                ///< of their KLT, per level
+  int min_samples = 5;                    ///< on a short line
+  int max_samples = 10;                   ///< on a long line
+  double refine_px = 3;                   ///< how far from the prediction the edge is searched
+  double grow_px = 16;                    ///< how far a line may grow along its edge in one frame, at each end
+  double merge_angle_rad = 0.07;          ///< largest angle between a prediction and a detection of the same line
+  double merge_distance_px = 3;           ///< largest distance of the detection's ends from the predicted line
+  int max_frames_without_detection = 20;  ///< a line that only optical flow sees is dropped after this
+  int border_px = 4;                      ///< lines end this far from the image border
+  int descriptor_distance = 40;  ///< largest Hamming distance of LBD descriptors (of 256 bits), mode descriptor
+
+  template <class F>
+  void fields(F&& field) {
+    field("enabled", enabled);
+    field("mode", mode);
+    field("detector", detector);
+    field("gradient_threshold", gradient_threshold);
+    field("detect_every_n", detect_every_n);
+    field("max_lines", max_lines);
+    field("min_length_px", min_length_px);
+    field("keep_length_px", keep_length_px);
+    field("window_px", window_px);
+    field("flow_levels", flow_levels);
+    field("max_iterations", max_iterations);
+    field("min_samples", min_samples);
+    field("max_samples", max_samples);
+    field("refine_px", refine_px);
+    field("grow_px", grow_px);
+    field("merge_angle_rad", merge_angle_rad);
+    field("merge_distance_px", merge_distance_px);
+    field("max_frames_without_detection", max_frames_without_detection);
+    field("border_px", border_px);
+    field("descriptor_distance", descriptor_distance);
+  }
+};
+
 /// What the front end is made of. Every value is checked by the FrontEnd's constructor.
 struct FrontEndParams {
   PyramidParams pyramid;
   PointTrackerParams points;
+  LineTrackerParams lines;
 
   template <class F>
   void fields(F&& field) {
     field("pyramid", pyramid);
     field("points", points);
+    field("lines", lines);
   }
 };
 

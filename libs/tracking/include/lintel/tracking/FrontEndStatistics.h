@@ -39,11 +39,27 @@ struct PointStatistics {
   TrackLifetimes lifetimes;
 };
 
+struct LineStatistics {
+  std::int64_t tracked = 0;           ///< lines carried over from the frame before, summed over frames
+  std::int64_t tracked_detected = 0;  ///< of them seen by the detector, too
+  std::int64_t created = 0;           ///< new identities
+  std::int64_t detections = 0;        ///< segments of the detector, joined
+  std::int64_t merged = 0;            ///< of them taken as parts of predicted lines
+  std::int64_t flow_failed = 0;       ///< predictions without optical flow (by gyro and points nearby)
+  std::int64_t lost_view = 0;         ///< left the image
+  std::int64_t lost_edge = 0;         ///< no edge at the predicted place, or too short a part of it
+  std::int64_t lost_duplicate = 0;    ///< became the same as an older line
+  std::int64_t lost_undetected = 0;   ///< not seen by the detector for too long
+  std::int64_t lost_unmatched = 0;    ///< mode descriptor: no match
+  TrackLifetimes lifetimes;           ///< in frames of the images' rate
+};
+
 /// What the front end has done so far. All but the times is deterministic.
 struct FrontEndStatistics {
   std::int64_t frames = 0;
   std::int64_t frames_without_gyro = 0;
   PointStatistics points;
+  LineStatistics lines;
   std::map<std::string, StageTimes> stages;  ///< by name of the stage
 };
 

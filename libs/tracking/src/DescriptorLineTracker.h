@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <opencv2/core.hpp>
+#include <vector>
+
+#include "LineDetector.h"
+#include "LineMatcher.h"
+#include "LineTracker.h"
+
+namespace lintel {
+
+/// Mode `descriptor`: every detection frame stands alone and is matched to the one before by LBD descriptors. The
+/// baseline that optical flow is compared with; frames between detections carry no lines.
+class DescriptorLineTracker : public LineTracker {
+ public:
+  DescriptorLineTracker(const Rig& rig, const LineTrackerParams& params);
+
+  void process(const ImagePyramid& pyramid, const GyroPrediction& gyro, const std::vector<PointFlow>& points,
+               FrontEndStatistics& statistics) override;
+  const std::vector<LineObservation>& lines() const override { return observations_; }
+
+ private:
+  struct Track {
+    TrackId id = 0;
+    ImageLine line;
+    int length = 1;
+  };
+
+  std::vector<ImageLine> detect(const ImagePyramid& pyramid, LineStatistics& statistics);
+
+  LineTrackerParams params_;
+  LineCamera camera_;
+  LineDetector detector_;
+  LineMatcher matcher_;
+  Eigen::Quaterniond R_now_last_ = Eigen::Quaterniond::Identity();  ///< rotation since the last detection
+  std::vector<Track> tracks_;                                       ///< of the last detection
+  cv::Mat descriptors_;
+  std::vector<LineObservation> observations_;
+  TrackId next_id_ = 1;
+  int frames_since_detection_ = 0;
+};
+
+}  // namespace lintel

@@ -1,0 +1,225 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "EdgeRefiner.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+namespace lintel {
+namespace {
+
+constexpr double kStep_px = 4;             ///< between samples along the line
+constexpr float kMinGradient = 32 * 2.0f;  ///< 2 grey levels a pixel, in units of the derivative image
+constexpr double kInlier_px = 0.8;         ///< of a sample's edge from the fitted line
+constexpr double kMinSupport = 0.5;
+constexpr double kFloor_px = 0.15;  ///< systematic: blur, sampling, lens model
+constexpr int kMaxReach = 8;        ///< profiles reach this far at most
+
+/// Edge candidates across the line at one place along it.
+struct Sample {
+  double s = 0;                    ///< along the line, from its start [px]
+  std::array<double, 2> offset{};  ///< along the normal, the stronger one first [px]
+  int candidates = 0;
+  double fitted = 0;  ///< the candidate that the fit uses
+  bool inlier = false;
+};
+
+/// Edge: offset(s) = alpha + beta * s.
+struct Fit {
+  double alpha = 0, beta = 0;
+  double at(double s) const { return alpha + beta * s; }
+};
+
+/// Bilinear gradient at (x, y), taken along (nx, ny); the caller keeps a pixel from the border.
+float gradientAlong(const cv::Mat& derivative, double x, double y, double nx, double ny) {
+  const int ix = static_cast<int>(x), iy = static_cast<int>(y);
+  const float fx = static_cast<float>(x - ix), fy = static_cast<float>(y - iy);
+  const short* upper = derivative.ptr<short>(iy) + 2 * ix;
+  const short* lower = derivative.ptr<short>(iy + 1) + 2 * ix;
+  const float w00 = (1 - fx) * (1 - fy), w01 = fx * (1 - fy), w10 = (1 - fx) * fy, w11 = fx * fy;
+  const float dx = w00 * upper[0] + w01 * upper[2] + w10 * lower[0] + w11 * lower[2];
+  const float dy = w00 * upper[1] + w01 * upper[3] + w10 * lower[1] + w11 * lower[3];
+  return dx * static_cast<float>(nx) + dy * static_cast<float>(ny);
+}
+
+/// Local maxima of the profile, the two strongest, by parabola.
+void findPeaks(const std::array<float, 2 * kMaxReach + 3>& profile, int reach, Sample& sample) {
+  std::array<float, 2> height{0, 0};
+  for (int i = 1; i <= 2 * reach + 1; ++i) {
+    const auto k = static_cast<std::size_t>(i);
+    const float here = profile[k], before = profile[k - 1], after = profile[k + 1];
+    if (here < kMinGradient || here < before || here <= after) continue;
+    const double offset = i - 1 - reach + 0.5 * (before - after) / (before - 2 * here + after);
+    if (here > height[0]) {
+      height[1] = height[0];
+      sample.offset[1] = sample.offset[0];
+      height[0] = here;
+      sample.offset[0] = offset;
+      sample.candidates = std::min(sample.candidates + 1, 2);
+    } else if (here > height[1]) {
+      height[1] = here;
+      sample.offset[1] = offset;
+      sample.candidates = 2;
+    }
+  }
+  if (sample.candidates == 2 && height[1] < 0.4f * height[0]) sample.candidates = 1;
+}
+
+std::vector<Sample> sampleProfiles(const LineCamera& camera, const cv::Mat& derivative, const ImageLine& line,
+                                   int reach, double grow_px) {
+  std::vector<Sample> samples;
+  const Eigen::Vector2d d = line.direction(), n = line.normal();
+  const int grow_steps = static_cast<int>(grow_px / kStep_px);
+  const int steps = static_cast<int>(line.length() / kStep_px);
+  const double first = 0.5 * (line.length() - steps * kStep_px);
+  std::array<float, 2 * kMaxReach + 3> profile{};
+  for (int i = -grow_steps; i <= steps + grow_steps; ++i) {
+    Sample sample;
+    sample.s = first + i * kStep_px;
+    const Eigen::Vector2d u = line.start + sample.s * d;
+    if (!camera.sees(u, reach + 3)) continue;
+    const Eigen::Vector2d px = camera.toImage(u), step = camera.imageJacobian(u) * n;
+    const double scale = 1.0 / step.norm();
+    for (int k = -reach - 1; k <= reach + 1; ++k)
+      profile[static_cast<std::size_t>(k + reach + 1)] =
+          gradientAlong(derivative, px.x() + k * step.x(), px.y() + k * step.y(), scale * step.x(), scale * step.y());
+    findPeaks(profile, reach, sample);
+    samples.push_back(sample);
+  }
+  return samples;
+}
+
+/// Distance of the nearest candidate from the fit, signed; large without candidates.
+double nearest(const Sample& sample, const Fit& fit, double& offset) {
+  double best = 1e9;
+  for (int c = 0; c < sample.candidates; ++c) {
+    const double r = sample.offset[static_cast<std::size_t>(c)] - fit.at(sample.s);
+    if (std::abs(r) < std::abs(best)) {
+      best = r;
+      offset = sample.offset[static_cast<std::size_t>(c)];
+    }
+  }
+  return best;
+}
+
+/// Votes over shifts and tilts around the prediction; among equals the nearer to it wins.
+Fit vote(const std::vector<Sample>& samples, double length, double search_px) {
+  Fit best;
+  double best_score = -1;
+  for (const double tilt : {0.0, -1.5, 1.5, -3.0, 3.0})
+    for (double shift = -search_px; shift <= search_px; shift += 0.5) {
+      const Fit fit{shift - 0.5 * tilt, tilt / length};
+      double score = 0, offset = 0;
+      for (const Sample& sample : samples) {
+        const double r = std::abs(nearest(sample, fit, offset));
+        if (r < 1.0) score += 1.0 - 0.5 * r;
+      }
+      score *= 1.0 - 0.25 * (std::abs(shift) + 0.5 * std::abs(tilt)) / (search_px + 1.5);
+      if (score > best_score) {
+        best_score = score;
+        best = fit;
+      }
+    }
+  return best;
+}
+
+/// Least squares over the candidates near the line, repeated; returns their root mean square distance.
+double leastSquares(std::vector<Sample>& samples, Fit& fit) {
+  double rms = 0;
+  for (int iteration = 0; iteration < 3; ++iteration) {
+    double n = 0, ss = 0, sss = 0, so = 0, sso = 0;
+    for (Sample& sample : samples) {
+      sample.inlier = std::abs(nearest(sample, fit, sample.fitted)) < kInlier_px;
+      if (!sample.inlier) continue;
+      n += 1;
+      ss += sample.s;
+      sss += sample.s * sample.s;
+      so += sample.fitted;
+      sso += sample.s * sample.fitted;
+    }
+    const double det = n * sss - ss * ss;
+    if (n < 4 || det < 1e-6 * n * sss) return 1e9;
+    fit = {(sss * so - ss * sso) / det, (n * sso - ss * so) / det};
+    double squares = 0;
+    for (const Sample& sample : samples)
+      if (sample.inlier) squares += std::pow(sample.fitted - fit.at(sample.s), 2);
+    rms = std::sqrt(squares / std::max(n - 2, 1.0));
+  }
+  return rms;
+}
+
+/// First sample (going by `step` from `from`) at which three of four samples see the edge; `end` when there is none.
+int firstSupported(const std::vector<Sample>& samples, int from, int end, int step) {
+  const auto sees = [&](int i) {
+    return i >= 0 && i < static_cast<int>(samples.size()) && samples[static_cast<std::size_t>(i)].inlier;
+  };
+  for (int i = from; i != end; i += step)
+    if (sees(i) && sees(i) + sees(i + step) + sees(i + 2 * step) + sees(i + 3 * step) >= 3) return i;
+  return end;
+}
+
+/// Walks outward from `at` while the edge goes on, over at most one sample without it.
+int growFrom(const std::vector<Sample>& samples, int at, int step) {
+  int last = at;
+  for (int i = at + step; i >= 0 && i < static_cast<int>(samples.size()) && std::abs(i - last) <= 2; i += step)
+    if (samples[static_cast<std::size_t>(i)].inlier) last = i;
+  return last;
+}
+
+}  // namespace
+
+std::optional<RefinedLine> EdgeRefiner::refine(const cv::Mat& derivative, const ImageLine& line, double search_px,
+                                               double grow_px) const {
+  const int reach = std::min(static_cast<int>(std::ceil(search_px)), kMaxReach);
+  const double length = line.length();
+  if (length < 4 * kStep_px) return std::nullopt;
+  std::vector<Sample> samples = sampleProfiles(camera_, derivative, line, reach, grow_px);
+  if (samples.size() < 5) return std::nullopt;
+  Fit fit = vote(samples, length, search_px);
+  const double rms = leastSquares(samples, fit);
+  if (rms > kInlier_px) return std::nullopt;
+
+  // The part of the samples on the given segment decides; what lies beyond may only be added to it.
+  int own_first = 0, own_last = static_cast<int>(samples.size()) - 1;
+  while (own_first < own_last && samples[static_cast<std::size_t>(own_first)].s < 0) ++own_first;
+  while (own_last > own_first && samples[static_cast<std::size_t>(own_last)].s > length) --own_last;
+  int first = firstSupported(samples, own_first, own_last, 1);
+  int last = firstSupported(samples, own_last, own_first, -1);
+  if (last - first < 3) return std::nullopt;
+  if (first == own_first) first = growFrom(samples, first, -1);
+  if (last == own_last) last = growFrom(samples, last, 1);
+
+  const int seen = static_cast<int>(std::count_if(samples.begin() + first, samples.begin() + last + 1,
+                                                  [](const Sample& sample) { return sample.inlier; }));
+  RefinedLine refined;
+  refined.support = static_cast<double>(seen) / (last - first + 1);
+  if (refined.support < kMinSupport) return std::nullopt;
+  const Eigen::Vector2d d = line.direction(), n = line.normal();
+  const auto pointAt = [&](double s) -> Eigen::Vector2d { return line.start + s * d + fit.at(s) * n; };
+  refined.line = {pointAt(samples[static_cast<std::size_t>(first)].s),
+                  pointAt(samples[static_cast<std::size_t>(last)].s)};
+  // The ends of a fitted line vary twice as much as its middle.
+  refined.sigma_px = std::hypot(kFloor_px, 2 * rms / std::sqrt(static_cast<double>(seen)));
+  return refined;
+}
+
+std::optional<ImageLine> EdgeRefiner::orient(const cv::Mat& derivative, const ImageLine& line) const {
+  double balance = 0, strength = 0;
+  const Eigen::Vector2d n = line.normal();
+  for (int i = 1; i <= 9; ++i) {
+    const Eigen::Vector2d u = line.at(0.1 * i);
+    if (!camera_.sees(u, 4)) continue;
+    const Eigen::Vector2d px = camera_.toImage(u), step = (camera_.imageJacobian(u) * n).normalized();
+    float strongest = 0;
+    for (int k = -2; k <= 2; ++k) {
+      const float g = gradientAlong(derivative, px.x() + k * step.x(), px.y() + k * step.y(), step.x(), step.y());
+      if (std::abs(g) > std::abs(strongest)) strongest = g;
+    }
+    balance += strongest;
+    strength += std::abs(strongest);
+  }
+  if (std::abs(balance) < 0.3 * strength || strength == 0) return std::nullopt;
+  return balance > 0 ? line : ImageLine{line.end, line.start};
+}
+
+}  // namespace lintel

@@ -1,0 +1,161 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "FlowLineTracker.h"
+
+#include <algorithm>
+
+#include "LineObservations.h"
+#include "StageTimer.h"
+
+namespace lintel {
+namespace {
+
+constexpr double kSupportWithoutFlow = 0.7;  ///< an edge found without optical flow must be a clear one
+constexpr double kSupportOfNew = 0.7;        ///< new lines are chosen, old ones are kept
+
+}  // namespace
+
+FlowLineTracker::FlowLineTracker(const Rig& rig, const LineTrackerParams& params)
+    : params_(params),
+      camera_(rig.camera),
+      detector_(camera_, params),
+      flow_(camera_, params),
+      merger_(params),
+      refiner_(camera_) {}
+
+void FlowLineTracker::process(const ImagePyramid& pyramid, const GyroPrediction& gyro,
+                              const std::vector<PointFlow>& points, FrontEndStatistics& statistics) {
+  if (pyramid.hasPrevious()) {
+    StageTimer timer(statistics, "lines_flow");
+    predict(pyramid, gyro, points, statistics.lines);
+  }
+  std::vector<ImageLine> fresh;
+  const bool detect = frames_since_detection_ == 0;
+  if (detect) {
+    StageTimer timer(statistics, "lines_detect");
+    fresh = mergeDetections(pyramid, statistics);
+  }
+  frames_since_detection_ = (frames_since_detection_ + 1) % params_.detect_every_n;
+  StageTimer timer(statistics, "lines_refine");
+  refine(pyramid, statistics.lines);
+  if (detect) {
+    addNew(pyramid, fresh, statistics.lines);
+    dropDuplicates(statistics.lines);
+  }
+  publish();
+}
+
+void FlowLineTracker::end(const Track& track, std::int64_t& reason, LineStatistics& statistics) const {
+  ++reason;
+  statistics.lifetimes.add(track.length);
+}
+
+void FlowLineTracker::predict(const ImagePyramid& pyramid, const GyroPrediction& gyro,
+                              const std::vector<PointFlow>& points, LineStatistics& statistics) {
+  std::vector<ImageLine> lines;
+  for (const Track& track : tracks_) lines.push_back(track.line);
+  const auto predicted = flow_.predict(lines, pyramid, gyro, points);
+  std::vector<Track> kept;
+  for (std::size_t i = 0; i < tracks_.size(); ++i) {
+    Track track = tracks_[i];
+    if (!predicted[i] || predicted[i]->line.length() < params_.keep_length_px) {
+      end(track, statistics.lost_view, statistics);
+      continue;
+    }
+    track.line = predicted[i]->line;
+    track.by_flow = predicted[i]->by_flow;
+    track.detected = false;
+    if (!track.by_flow) ++statistics.flow_failed;
+    ++track.length;
+    ++track.undetected;
+    kept.push_back(track);
+  }
+  tracks_ = std::move(kept);
+}
+
+std::vector<ImageLine> FlowLineTracker::mergeDetections(const ImagePyramid& pyramid, FrontEndStatistics& statistics) {
+  const std::vector<ImageLine> detected = detector_.detect(pyramid);
+  std::vector<ImageLine> predicted;
+  for (const Track& track : tracks_) predicted.push_back(track.line);
+  MergedLines merged = merger_.merge(predicted, detected);
+  for (std::size_t i = 0; i < tracks_.size(); ++i) {
+    tracks_[i].line = merged.lines[i];
+    tracks_[i].detected = merged.detections[i] > 0;
+    if (tracks_[i].detected) tracks_[i].undetected = 0;
+  }
+  statistics.lines.detections += static_cast<std::int64_t>(detected.size());
+  statistics.lines.merged += static_cast<std::int64_t>(detected.size() - merged.fresh.size());
+  return std::move(merged.fresh);
+}
+
+void FlowLineTracker::refine(const ImagePyramid& pyramid, LineStatistics& statistics) {
+  std::vector<Track> kept;
+  for (Track& track : tracks_) {
+    // Without flow the prediction is worse, and the edge may lie further off.
+    const double search_px = track.by_flow ? params_.refine_px : params_.refine_px + 2;
+    const auto refined = refiner_.refine(pyramid.derivative(), track.line, search_px, params_.grow_px);
+    if (!refined || refined->line.length() < params_.keep_length_px ||
+        (!track.by_flow && refined->support < kSupportWithoutFlow)) {
+      end(track, statistics.lost_edge, statistics);
+      continue;
+    }
+    if (track.undetected > params_.max_frames_without_detection) {
+      end(track, statistics.lost_undetected, statistics);
+      continue;
+    }
+    const auto clipped = camera_.clip(refined->line, params_.border_px);
+    if (!clipped) {
+      end(track, statistics.lost_view, statistics);
+      continue;
+    }
+    track.line = *clipped;
+    track.sigma_px = refined->sigma_px;
+    ++statistics.tracked;
+    statistics.tracked_detected += track.detected;
+    kept.push_back(track);
+  }
+  tracks_ = std::move(kept);
+}
+
+void FlowLineTracker::dropDuplicates(LineStatistics& statistics) {
+  std::vector<Track> kept;
+  for (const Track& track : tracks_) {
+    // Ids ascend: the older one has been kept already.
+    const auto same = std::find_if(kept.begin(), kept.end(),
+                                   [&](const Track& older) { return merger_.duplicates(older.line, track.line); });
+    if (same == kept.end())
+      kept.push_back(track);
+    else
+      end(track, statistics.lost_duplicate, statistics);
+  }
+  tracks_ = std::move(kept);
+}
+
+void FlowLineTracker::addNew(const ImagePyramid& pyramid, const std::vector<ImageLine>& fresh,
+                             LineStatistics& statistics) {
+  for (const ImageLine& candidate : fresh) {  // longest first
+    if (static_cast<int>(tracks_.size()) >= params_.max_lines) return;
+    if (candidate.length() < params_.min_length_px) continue;
+    const auto refined = refiner_.refine(pyramid.derivative(), candidate, params_.refine_px, params_.grow_px);
+    if (!refined || refined->support < kSupportOfNew) continue;
+    const auto clipped = camera_.clip(refined->line, params_.border_px);
+    if (!clipped || clipped->length() < params_.min_length_px) continue;
+    if (std::any_of(tracks_.begin(), tracks_.end(),
+                    [&](const Track& track) { return merger_.duplicates(track.line, *clipped); }))
+      continue;
+    Track track;
+    track.id = next_id_++;
+    track.line = *clipped;
+    track.sigma_px = refined->sigma_px;
+    tracks_.push_back(track);
+    ++statistics.created;
+  }
+}
+
+void FlowLineTracker::publish() {
+  observations_.clear();
+  for (const Track& track : tracks_)
+    observations_.push_back(
+        lineObservation(camera_, track.id, track.line, track.sigma_px, track.length, track.detected));
+}
+
+}  // namespace lintel

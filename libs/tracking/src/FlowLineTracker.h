@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <vector>
+
+#include "EdgeRefiner.h"
+#include "LineDetector.h"
+#include "LineFlow.h"
+#include "LineMerger.h"
+#include "LineTracker.h"
+
+namespace lintel {
+
+/// Mode `flow`: predict by optical flow, merge with detections when there are any, lay the result on the image's edges.
+class FlowLineTracker : public LineTracker {
+ public:
+  FlowLineTracker(const Rig& rig, const LineTrackerParams& params);
+
+  void process(const ImagePyramid& pyramid, const GyroPrediction& gyro, const std::vector<PointFlow>& points,
+               FrontEndStatistics& statistics) override;
+  const std::vector<LineObservation>& lines() const override { return observations_; }
+
+ private:
+  struct Track {
+    TrackId id = 0;
+    ImageLine line;
+    double sigma_px = 1;
+    int length = 1;
+    int undetected = 0;  ///< frames since the detector last saw it
+    bool by_flow = true;
+    bool detected = true;
+  };
+
+  void predict(const ImagePyramid& pyramid, const GyroPrediction& gyro, const std::vector<PointFlow>& points,
+               LineStatistics& statistics);
+  std::vector<ImageLine> mergeDetections(const ImagePyramid& pyramid, FrontEndStatistics& statistics);
+  void refine(const ImagePyramid& pyramid, LineStatistics& statistics);
+  void dropDuplicates(LineStatistics& statistics);
+  void addNew(const ImagePyramid& pyramid, const std::vector<ImageLine>& fresh, LineStatistics& statistics);
+  void publish();
+  void end(const Track& track, std::int64_t& reason, LineStatistics& statistics) const;
+
+  LineTrackerParams params_;
+  LineCamera camera_;
+  LineDetector detector_;
+  LineFlow flow_;
+  LineMerger merger_;
+  EdgeRefiner refiner_;
+  std::vector<Track> tracks_;  ///< ascending id
+  std::vector<LineObservation> observations_;
+  TrackId next_id_ = 1;
+  int frames_since_detection_ = 0;
+};
+
+}  // namespace lintel

@@ -1,0 +1,93 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "LineDetector.h"
+
+#include <algorithm>
+#include <opencv2/imgproc.hpp>
+#include <opencv2/ximgproc/edge_drawing.hpp>
+#include <stdexcept>
+
+namespace lintel {
+namespace {
+
+constexpr double kJoinAngle_rad = 0.035;  ///< 2 degrees
+constexpr double kJoinDistance_px = 2.0;
+constexpr double kJoinGap_px = 15;
+
+/// Joins `other` to `line` when both are pieces of one edge.
+bool join(ImageLine& line, const ImageLine& other) {
+  const LineRelation relation = relate(line, other);
+  if (relation.angle_rad > kJoinAngle_rad || relation.distance_px > kJoinDistance_px ||
+      relation.overlap_px < -kJoinGap_px)
+    return false;
+  const Eigen::Vector2d d = line.direction();
+  if (d.dot(other.start - line.start) < 0) line.start = other.start;
+  if (d.dot(other.end - line.end) > 0) line.end = other.end;
+  return true;
+}
+
+void sortLongestFirst(std::vector<ImageLine>& lines) {
+  std::stable_sort(lines.begin(), lines.end(),
+                   [](const ImageLine& a, const ImageLine& b) { return a.length() > b.length(); });
+}
+
+std::vector<ImageLine> joined(std::vector<ImageLine> pieces) {
+  sortLongestFirst(pieces);
+  std::vector<ImageLine> lines;
+  for (const ImageLine& piece : pieces)
+    if (std::none_of(lines.begin(), lines.end(), [&](ImageLine& line) { return join(line, piece); }))
+      lines.push_back(piece);
+  sortLongestFirst(lines);
+  return lines;
+}
+
+}  // namespace
+
+struct LineDetector::Engine {
+  cv::Ptr<cv::ximgproc::EdgeDrawing> edge_drawing;
+  cv::Ptr<cv::LineSegmentDetector> lsd;
+};
+
+LineDetector::LineDetector(const LineCamera& camera, const LineTrackerParams& params)
+    : camera_(camera), params_(params), refiner_(camera), engine_(std::make_unique<Engine>()) {
+  if (params_.detector == "lsd") {
+    engine_->lsd = cv::createLineSegmentDetector(cv::LSD_REFINE_NONE, 1.0);
+  } else if (params_.detector == "edge_drawing") {
+    engine_->edge_drawing = cv::ximgproc::createEdgeDrawing();
+    cv::ximgproc::EdgeDrawing::Params& p = engine_->edge_drawing->params;
+    p.EdgeDetectionOperator = cv::ximgproc::EdgeDrawing::SOBEL;
+    p.GradientThresholdValue = params_.gradient_threshold;
+    p.AnchorThresholdValue = 4;
+    p.MinLineLength = std::max(8, static_cast<int>(0.3 * params_.min_length_px));  // pieces are joined later
+  } else {
+    throw std::invalid_argument("front end: lines.detector = " + params_.detector + ", must be edge_drawing or lsd");
+  }
+}
+
+LineDetector::~LineDetector() = default;
+
+std::vector<cv::Vec4f> LineDetector::detectRaw(const ImagePyramid& pyramid) {
+  // The second level of the pyramid is already smoothed and costs a quarter.
+  const int level = std::min(1, pyramid.levels() - 1);
+  const cv::Mat image = pyramid.image(level).clone();  // the pyramid's levels are views with a border around them
+  std::vector<cv::Vec4f> segments;
+  if (engine_->lsd) {
+    engine_->lsd->detect(image, segments);
+  } else {
+    engine_->edge_drawing->detectEdges(image);
+    engine_->edge_drawing->detectLines(segments);
+  }
+  for (cv::Vec4f& segment : segments) segment *= static_cast<float>(1 << level);
+  return segments;
+}
+
+std::vector<ImageLine> LineDetector::detect(const ImagePyramid& pyramid) {
+  std::vector<ImageLine> pieces;
+  for (const cv::Vec4f& s : detectRaw(pyramid)) {
+    if (std::hypot(s[2] - s[0], s[3] - s[1]) < 0.3 * params_.min_length_px) continue;
+    const ImageLine line{camera_.fromImage({s[0], s[1]}), camera_.fromImage({s[2], s[3]})};
+    if (const auto oriented = refiner_.orient(pyramid.derivative(), line)) pieces.push_back(*oriented);
+  }
+  return joined(std::move(pieces));
+}
+
+}  // namespace lintel

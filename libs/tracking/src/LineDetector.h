@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <memory>
+#include <opencv2/core.hpp>
+#include <vector>
+
+#include "EdgeRefiner.h"
+#include "ImageLine.h"
+#include "ImagePyramid.h"
+#include "lintel/tracking/FrontEndParams.h"
+
+namespace lintel {
+
+/// Finds line segments in an image. Positions are as coarse as half resolution allows (about 1 px): EdgeRefiner lays
+/// them on the edge.
+class LineDetector {
+ public:
+  /// Throws std::invalid_argument for an unknown params.detector.
+  LineDetector(const LineCamera& camera, const LineTrackerParams& params);
+  ~LineDetector();
+
+  /// Segments of the current image, each with the brighter side along its normal, pieces of one edge that lie end to
+  /// end joined; longer ones first.
+  std::vector<ImageLine> detect(const ImagePyramid& pyramid);
+
+  /// What the detector itself says, raw image pixels of full resolution (x0 y0 x1 y1).
+  std::vector<cv::Vec4f> detectRaw(const ImagePyramid& pyramid);
+
+ private:
+  struct Engine;
+  const LineCamera& camera_;
+  LineTrackerParams params_;
+  EdgeRefiner refiner_;
+  std::unique_ptr<Engine> engine_;
+};
+
+}  // namespace lintel

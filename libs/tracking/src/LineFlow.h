@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <opencv2/core.hpp>
+#include <optional>
+#include <vector>
+
+#include "GyroPrediction.h"
+#include "ImageLine.h"
+#include "ImagePyramid.h"
+#include "PointTracker.h"
+#include "lintel/tracking/FrontEndParams.h"
+
+namespace lintel {
+
+/// A line carried into the current frame.
+struct PredictedLine {
+  ImageLine line;
+  bool by_flow = false;  ///< false: optical flow failed; the gyro and the points nearby say where it should be
+};
+
+/// Carries lines from one frame to the next: several points along each are followed by KLT, starting where gyro and
+/// nearby tracked points say, and a line is fitted to them in undistorted coordinates [Lim2021, line tracking].
+class LineFlow {
+ public:
+  LineFlow(const LineCamera& camera, const LineTrackerParams& params) : camera_(camera), params_(params) {}
+
+  /// One result per line; empty when it left the image.
+  std::vector<std::optional<PredictedLine>> predict(const std::vector<ImageLine>& lines, const ImagePyramid& pyramid,
+                                                    const GyroPrediction& gyro,
+                                                    const std::vector<PointFlow>& points) const;
+
+ private:
+  struct Samples {
+    std::vector<std::size_t> first;        ///< of each line; one more at the end
+    std::vector<cv::Point2f> from, guess;  ///< image pixels
+    std::vector<cv::Point2f> residual;     ///< expected motion beyond the rotation
+  };
+  Samples sample(const std::vector<ImageLine>& lines, const GyroPrediction& gyro,
+                 const std::vector<PointFlow>& points) const;
+
+  const LineCamera& camera_;
+  LineTrackerParams params_;
+};
+
+/// Mean motion of the tracked points near `px` beyond the rotation, nearer ones weighing more; zero without any.
+cv::Point2f residualNear(const cv::Point2f& px, const std::vector<PointFlow>& points);
+
+}  // namespace lintel

@@ -1,0 +1,66 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "LineMerger.h"
+
+#include <algorithm>
+
+namespace lintel {
+namespace {
+
+constexpr double kGap_px = 15;  ///< between a line and a detection that continues it
+constexpr double kDuplicateDistance_px = 1.5;
+constexpr double kDuplicateOverlap = 0.5;  ///< of the shorter one
+
+struct Pair {
+  std::size_t predicted, detected;
+  double score;
+};
+
+void extend(ImageLine& line, const ImageLine& piece) {
+  const Eigen::Vector2d d = line.direction();
+  if (d.dot(piece.start - line.start) < 0) line.start = piece.start;
+  if (d.dot(piece.end - line.end) > 0) line.end = piece.end;
+}
+
+}  // namespace
+
+double LineMerger::score(const ImageLine& predicted, const ImageLine& detected) const {
+  const LineRelation relation = relate(predicted, detected);
+  const double shorter = std::min(predicted.length(), detected.length());
+  if (relation.angle_rad > params_.merge_angle_rad || relation.distance_px > params_.merge_distance_px ||
+      relation.overlap_px < -kGap_px || shorter <= 0)
+    return 0;
+  // A piece that merely continues the line counts, but less than one beside it.
+  const double overlap = 0.2 + 0.8 * std::clamp(relation.overlap_px / shorter, 0.0, 1.0);
+  return overlap * (1.0 - 0.7 * relation.angle_rad / params_.merge_angle_rad) *
+         (1.0 - 0.7 * relation.distance_px / params_.merge_distance_px);
+}
+
+MergedLines LineMerger::merge(const std::vector<ImageLine>& predicted, const std::vector<ImageLine>& detected) const {
+  std::vector<Pair> pairs;
+  for (std::size_t p = 0; p < predicted.size(); ++p)
+    for (std::size_t d = 0; d < detected.size(); ++d)
+      if (const double s = score(predicted[p], detected[d]); s > 0) pairs.push_back({p, d, s});
+  std::stable_sort(pairs.begin(), pairs.end(), [](const Pair& a, const Pair& b) { return a.score > b.score; });
+
+  MergedLines merged{predicted, std::vector<int>(predicted.size(), 0), {}};
+  std::vector<char> taken(detected.size(), 0);
+  for (const Pair& pair : pairs) {
+    if (taken[pair.detected]) continue;
+    taken[pair.detected] = 1;
+    ++merged.detections[pair.predicted];
+    extend(merged.lines[pair.predicted], detected[pair.detected]);
+  }
+  for (std::size_t d = 0; d < detected.size(); ++d)
+    if (!taken[d]) merged.fresh.push_back(detected[d]);
+  return merged;
+}
+
+bool LineMerger::duplicates(const ImageLine& a, const ImageLine& b) const {
+  const bool a_longer = a.length() >= b.length();
+  const ImageLine &longer = a_longer ? a : b, &shorter = a_longer ? b : a;
+  const LineRelation relation = relate(longer, shorter);
+  return relation.angle_rad < params_.merge_angle_rad && relation.distance_px < kDuplicateDistance_px &&
+         relation.overlap_px > kDuplicateOverlap * shorter.length();
+}
+
+}  // namespace lintel

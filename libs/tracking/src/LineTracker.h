@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "GyroPrediction.h"
+#include "ImagePyramid.h"
+#include "PointTracker.h"
+#include "lintel/tracking/FrameTracks.h"
+#include "lintel/tracking/FrontEndParams.h"
+#include "lintel/tracking/FrontEndStatistics.h"
+
+namespace lintel {
+
+/// Lines with identity over time.
+class LineTracker {
+ public:
+  virtual ~LineTracker() = default;
+
+  /// Takes the pyramid's current frame; `points` is what tracked points did on the way to it.
+  virtual void process(const ImagePyramid& pyramid, const GyroPrediction& gyro, const std::vector<PointFlow>& points,
+                       FrontEndStatistics& statistics) = 0;
+
+  /// Lines of the current frame, ascending id.
+  virtual const std::vector<LineObservation>& lines() const = 0;
+};
+
+/// The tracker of params.mode.
+std::unique_ptr<LineTracker> makeLineTracker(const Rig& rig, const LineTrackerParams& params);
+
+}  // namespace lintel
