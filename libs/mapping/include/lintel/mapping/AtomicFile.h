@@ -29,6 +29,9 @@ class AtomicFile {
   /// Appends `bytes`. Throws FileWriteError (disk full, …).
   void write(std::string_view bytes);
 
+  /// Hands what was appended so far to the system: most failures show here. Throws FileWriteError.
+  void flush();
+
   /// Makes the file appear under its name. Throws FileWriteError; then nothing has appeared. Call once, last.
   void commit();
 
@@ -36,7 +39,6 @@ class AtomicFile {
   static void writeWhole(const std::string& path, std::string_view bytes);
 
  private:
-  void flush();
   [[noreturn]] void fail(int error_number) const;
 
   std::string path_;       // as given, for messages

@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <Eigen/Core>
+#include <Eigen/Geometry>
+#include <string>
+#include <vector>
+
+#include "Colours.h"
+#include "lintel/exporting/MapExport.h"
+
+namespace lintel {
+
+struct DrawnSegment {
+  Eigen::Vector3d start, end;  ///< world [m]; finite, and different as floats too
+  Rgb colour;
+  const MapLine* line = nullptr;  ///< none for a keyframe's or the trajectory's strokes
+};
+
+struct DrawnPoint {
+  Eigen::Vector3d p;  ///< world [m], finite
+  Rgb colour;
+  const MapPoint* point = nullptr;
+};
+
+/// A named part of a drawing: segments or points.
+struct DrawnPart {
+  std::string name;  ///< "Group 2", "No group", "Points", "Keyframes", "Trajectory"
+  MapLayer layer = MapLayer::kLines;
+  int group = -1;  ///< of lines
+  std::vector<DrawnSegment> segments;
+  std::vector<DrawnPoint> points;
+};
+
+/// A map made ready to be drawn: selected, coloured, finite. Refers to the map, which must outlive it.
+struct Drawing {
+  const LineMap* map = nullptr;
+  std::vector<DrawnPart> parts;  ///< lines by ascending group, then points, keyframes, trajectory; no empty ones
+  std::vector<const MapKeyframe*> keyframes;  ///< drawn ones
+  std::vector<const MapLine*> lines;          ///< drawn ones, ascending id
+  LineStyle style = LineStyle::kLines;
+  double radius_m = 0.01;                           ///< of tubes
+  double frustum_m = 0.2;                           ///< depth of a keyframe's frustum
+  Eigen::AlignedBox3d core;                         ///< of the 2 to 98 % of what is drawn; never empty
+  std::vector<std::pair<std::string, Rgb>> legend;  ///< what the lines' colours mean
+  ExportSummary summary;                            ///< without files
+};
+
+/// Strokes of a camera's frustum of the given depth, in the world.
+std::vector<DrawnSegment> frustumSegments(const Rig& rig, const Pose& T_w_b, double depth_m, Rgb colour);
+
+/// `params` must have style and layers set.
+Drawing makeDrawing(const LineMap& map, const ExportParams& params);
+
+}  // namespace lintel

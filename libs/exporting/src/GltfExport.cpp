@@ -1,0 +1,140 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <cstring>
+#include <nlohmann/json.hpp>
+#include <string_view>
+
+#include "AssimpScene.h"
+#include "Writers.h"
+
+// glTF 2 by assimp, then what assimp cannot say: which data belongs to each line (extras), unlit strokes.
+namespace lintel {
+
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+constexpr std::uint32_t kJsonChunk = 0x4E4F534A, kBinaryChunk = 0x004E4942, kMagic = 0x46546C67;
+
+struct Glb {
+  Json json;
+  std::string binary;
+};
+
+std::uint32_t u32At(const std::string& bytes, std::size_t at) {
+  if (at + 4 > bytes.size()) throw ExportError("assimp's glb breaks off");
+  std::uint32_t v = 0;
+  for (std::size_t i = 0; i < 4; ++i)
+    v |= static_cast<std::uint32_t>(static_cast<unsigned char>(bytes[at + i])) << (8 * i);
+  return v;
+}
+
+void appendU32(std::string& bytes, std::size_t v) {
+  for (int i = 0; i < 4; ++i) bytes.push_back(static_cast<char>(v >> (8 * i)));
+}
+
+Glb splitGlb(const std::string& bytes) {
+  Glb glb;
+  for (std::size_t at = 12; at < bytes.size();) {
+    const std::uint32_t size = u32At(bytes, at), kind = u32At(bytes, at + 4);
+    const std::string_view chunk = std::string_view(bytes).substr(at + 8, size);
+    if (kind == kJsonChunk) glb.json = Json::parse(chunk);
+    if (kind == kBinaryChunk) glb.binary = chunk;
+    at += 8 + size;
+  }
+  return glb;
+}
+
+std::string joinGlb(const Glb& glb) {
+  std::string json = glb.json.dump();
+  json.append((4 - json.size() % 4) % 4, ' ');
+  std::string binary = glb.binary;
+  binary.append((4 - binary.size() % 4) % 4, '\0');
+  std::string bytes;
+  bytes.reserve(28 + json.size() + binary.size());
+  appendU32(bytes, kMagic), appendU32(bytes, 2);
+  appendU32(bytes, 12 + 8 + json.size() + (binary.empty() ? 0 : 8 + binary.size()));
+  appendU32(bytes, json.size()), appendU32(bytes, kJsonChunk);
+  bytes += json;
+  if (binary.empty()) return bytes;
+  appendU32(bytes, binary.size()), appendU32(bytes, kBinaryChunk);
+  return bytes += binary;
+}
+
+/// What is known of each line of a part, by column: element i belongs to the mesh's segment i.
+Json lineData(const DrawnPart& part) {
+  Json ids = Json::array(), observations = Json::array(), direction = Json::array(), distance = Json::array(),
+       degenerate = Json::array(), constrained = Json::array();
+  const auto finite = [](double v) { return std::isfinite(v) ? Json(static_cast<float>(v)) : Json(nullptr); };
+  for (const DrawnSegment& s : part.segments) {
+    ids.push_back(s.line->id), observations.push_back(s.line->observations.size());
+    direction.push_back(finite(s.line->sigma_direction_rad)), distance.push_back(finite(s.line->sigma_distance_m));
+    degenerate.push_back(s.line->degenerate ? 1 : 0), constrained.push_back(s.line->constrained ? 1 : 0);
+  }
+  return {{"group", part.group},          {"id", ids},
+          {"observations", observations}, {"sigma_direction_rad", direction},
+          {"sigma_distance_m", distance}, {"degenerate", degenerate},
+          {"constrained", constrained}};
+}
+
+void addExtras(const Drawing& drawing, Json& json) {
+  json["asset"]["generator"] = "Lintel";
+  json["asset"]["extras"] = {{"source", drawing.map->source},
+                             {"lines", drawing.summary.lines},
+                             {"points", drawing.summary.points},
+                             {"keyframes", drawing.summary.keyframes},
+                             {"frame", "world, z up, below the node Map"}};
+  if (!json.contains("nodes")) return;
+  for (Json& node : json["nodes"]) {
+    for (const DrawnPart& part : drawing.parts) {
+      if (part.layer == MapLayer::kLines && node.value("name", "") == "Lines " + part.name)
+        node["extras"] = lineData(part);
+    }
+  }
+}
+
+void makeUnlit(Json& json) {
+  if (!json.contains("materials")) return;
+  bool any = false;
+  for (Json& material : json["materials"]) {
+    if (material.value("name", "").rfind("Strokes", 0) != 0) continue;
+    material["extensions"]["KHR_materials_unlit"] = Json::object();
+    material.erase("emissiveFactor");
+    any = true;
+  }
+  if (any) json["extensionsUsed"] = {"KHR_materials_unlit"};
+}
+
+Glb makeGlb(const Drawing& drawing, const std::string& path) {
+  const auto scene = makeAssimpScene(drawing, true);
+  Glb glb = splitGlb(exportByAssimp(*scene, "glb2", path));
+  addExtras(drawing, glb.json);
+  makeUnlit(glb.json);
+  return glb;
+}
+
+std::string base64(const std::string& bytes) {
+  constexpr char digits[] = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+  std::string text;
+  text.reserve((bytes.size() + 2) / 3 * 4);
+  for (std::size_t i = 0; i < bytes.size(); i += 3) {
+    std::uint32_t v = 0;
+    for (std::size_t k = 0; k < 3; ++k)
+      v = v << 8 | (i + k < bytes.size() ? static_cast<unsigned char>(bytes[i + k]) : 0U);
+    for (std::size_t k = 0; k < 4; ++k) text.push_back(i + k > bytes.size() ? '=' : digits[v >> (18 - 6 * k) & 63]);
+  }
+  return text;
+}
+
+}  // namespace
+
+OutputFiles glbFiles(const Drawing& drawing, const std::string& path) {
+  return {{path, joinGlb(makeGlb(drawing, path))}};
+}
+
+OutputFiles gltfFiles(const Drawing& drawing, const std::string& path) {
+  Glb glb = makeGlb(drawing, path);
+  if (!glb.binary.empty()) glb.json["buffers"][0]["uri"] = "data:application/octet-stream;base64," + base64(glb.binary);
+  return {{path, glb.json.dump(1) + '\n'}};
+}
+
+}  // namespace lintel

@@ -1,0 +1,115 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "lintel/exporting/MapExport.h"
+
+#include <algorithm>
+#include <cctype>
+#include <cmath>
+#include <filesystem>
+#include <memory>
+
+#include "Writers.h"
+#include "lintel/mapping/AtomicFile.h"
+
+namespace lintel {
+
+namespace {
+
+using Layers = std::set<MapLayer>;
+const Layers kAll{MapLayer::kLines, MapLayer::kPoints, MapLayer::kKeyframes, MapLayer::kTrajectory};
+const Layers kNoPoints{MapLayer::kLines, MapLayer::kKeyframes, MapLayer::kTrajectory};
+const Layers kOnlyLines{MapLayer::kLines};
+
+/// A form of export with the defaults under which its usual viewer shows lines.
+struct Format {
+  const char* extension;
+  OutputFiles (*write)(const Drawing&, const std::string&);
+  LineStyle style;
+  Layers layers;
+  const char* viewer;
+};
+
+const std::vector<Format>& formats() {
+  static const std::vector<Format> all{
+      {"glb", glbFiles, LineStyle::kLines, kAll, "f3d FILE, Blender (import glTF 2.0) or a browser's glTF viewer"},
+      {"obj", objFiles, LineStyle::kTubes, kOnlyLines, "meshlab FILE or Blender (import Wavefront)"},
+      {"ply", plyFiles, LineStyle::kTubes, kOnlyLines, "meshlab FILE or CloudCompare"},
+      {"3Dscene", sceneFiles, LineStyle::kLines, kAll, "SceneViewer3D FILE"},
+      {"csv", csvFiles, LineStyle::kLines, kOnlyLines, "any table program"},
+      {"png", pngFiles, LineStyle::kLines, kNoPoints, "any picture viewer"},
+  };
+  return all;
+}
+
+std::string lowerCase(std::string text) {
+  for (char& c : text) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  return text;
+}
+
+const Format* findFormat(const std::string& extension) {
+  for (const Format& format : formats()) {
+    if (lowerCase(format.extension) == lowerCase(extension)) return &format;
+  }
+  return nullptr;
+}
+
+std::string listOfFormats() {
+  std::string list;
+  for (const Format& format : formats()) list += (list.empty() ? "" : " ") + std::string(format.extension);
+  return list;
+}
+
+void check(const ExportParams& params) {
+  if (!(params.radius_m >= 0) || std::isinf(params.radius_m))
+    throw ExportError("the tubes' radius must be a length in metres");
+  if (!(params.min_length_m >= 0)) throw ExportError("the least length of lines must be a length in metres");
+  if (std::isnan(params.max_sigma_m)) throw ExportError("the greatest sigma of lines must be a length in metres");
+}
+
+/// All files or none: the ones beside first, as the main one refers to them.
+void writeAll(const OutputFiles& files) {
+  try {
+    std::vector<std::unique_ptr<AtomicFile>> open;
+    for (const OutputFile& file : files) {
+      open.push_back(std::make_unique<AtomicFile>(file.path));
+      open.back()->write(file.bytes);
+      open.back()->flush();
+    }
+    for (auto file = open.rbegin(); file != open.rend(); ++file) (*file)->commit();
+  } catch (const FileWriteError& error) {
+    throw ExportError(error.what());
+  }
+}
+
+}  // namespace
+
+std::vector<std::string> exportFormats() {
+  std::vector<std::string> extensions;
+  for (const Format& format : formats()) extensions.emplace_back(format.extension);
+  return extensions;
+}
+
+std::string viewerHint(const std::string& extension) {
+  const Format* format = findFormat(extension);
+  return format ? format->viewer : "";
+}
+
+ExportSummary exportMap(const LineMap& map, const std::string& path, const ExportParams& params) {
+  std::string extension = std::filesystem::path(path).extension().string();
+  if (!extension.empty()) extension.erase(0, 1);
+  const Format* format = findFormat(extension);
+  if (!format)
+    throw ExportError("cannot write " + path + ": no export has the extension '" + extension + "'; take one of " +
+                      listOfFormats());
+  check(params);
+  ExportParams complete = params;
+  if (!complete.style) complete.style = format->style;
+  if (!complete.layers) complete.layers = format->layers;
+  const Drawing drawing = makeDrawing(map, complete);
+  const OutputFiles files = format->write(drawing, path);
+  writeAll(files);
+  ExportSummary summary = drawing.summary;
+  for (const OutputFile& file : files) summary.files.push_back(file.path);
+  return summary;
+}
+
+}  // namespace lintel

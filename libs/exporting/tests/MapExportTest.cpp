@@ -1,0 +1,226 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "lintel/exporting/MapExport.h"
+
+#include <gmock/gmock.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <limits>
+
+#include "Files.h"
+#include "Reimport.h"
+#include "SampleMap.h"
+
+namespace lintel {
+namespace {
+
+const LineMap kRoom = sampleRoom();
+
+class MapExport : public FolderTest {};
+
+Segment3 upright(const Segment3& s) {  // z up to y up
+  const auto turn = [](const Eigen::Vector3d& p) { return Eigen::Vector3d(p.x(), p.z(), -p.y()); };
+  return {turn(s.start), turn(s.end)};
+}
+
+/// `relative`: single precision holds seven digits, so runaway lines far off are compared by their size.
+bool same(const Segment3& a, const Segment3& b) {
+  const double scale = std::max({1.0, b.start.norm() / 10, b.end.norm() / 10});
+  return (a.start - b.start).norm() < 1e-6 * scale && (a.end - b.end).norm() < 1e-6 * scale;
+}
+
+void expectSameSegments(const std::vector<Segment3>& found, bool y_up) {
+  ASSERT_EQ(found.size(), kRoom.lines.size());
+  std::vector<bool> used(found.size());
+  for (const MapLine& line : kRoom.lines) {
+    const Segment3 wanted = y_up ? upright(line.segment_w) : line.segment_w;
+    bool matched = false;
+    for (std::size_t i = 0; i < found.size() && !matched; ++i) {
+      if (!used[i] && same(found[i], wanted)) used[i] = matched = true;
+    }
+    EXPECT_TRUE(matched) << "line " << line.id;
+  }
+}
+
+ExportParams style(LineStyle s) {
+  ExportParams params;
+  params.style = s;
+  return params;
+}
+
+TEST_F(MapExport, ObjGivesTheSameSegmentsBack) {
+  exportMap(kRoom, in("map.obj"));
+  const Reimported obj = reimport(in("map.obj"));
+  ASSERT_EQ(obj.error, "");
+  expectSameSegments(obj.segments, false);
+  EXPECT_EQ(obj.triangles, 12 * kRoom.lines.size());
+  exportMap(kRoom, in("lines.obj"), style(LineStyle::kLines));
+  const Reimported lines = reimport(in("lines.obj"));
+  expectSameSegments(lines.segments, false);
+  EXPECT_EQ(lines.triangles, 0u);
+}
+
+TEST_F(MapExport, ObjKeepsVertexOneOutOfFaces) {
+  exportMap(kRoom, in("map.obj"));
+  const std::string text = content(in("map.obj"));
+  EXPECT_THAT(text, ::testing::HasSubstr("\nf "));
+  for (std::size_t at = text.find("\nf "); at != std::string::npos; at = text.find("\nf ", at + 1)) {
+    const std::string face = text.substr(at + 2, text.find('\n', at + 1) - at - 2) + " ";
+    EXPECT_EQ(face.find(" 1 "), std::string::npos) << face;
+  }
+}
+
+TEST_F(MapExport, PlyTubesGiveTheSameSegmentsBack) {
+  exportMap(kRoom, in("map.ply"));
+  const Reimported ply = reimport(in("map.ply"));
+  ASSERT_EQ(ply.error, "");
+  EXPECT_EQ(ply.triangles, 12 * kRoom.lines.size());
+  expectSameSegments(ply.tubes, false);
+}
+
+TEST_F(MapExport, GlbGivesTheSameSegmentsBackUnderNamedNodes) {
+  const ExportSummary summary = exportMap(kRoom, in("map.glb"));
+  EXPECT_EQ(summary.lines, kRoom.lines.size());
+  EXPECT_EQ(summary.points, 300u);
+  EXPECT_EQ(summary.keyframes, 20u);
+  ExportParams params;
+  params.layers = {MapLayer::kLines};
+  exportMap(kRoom, in("lines.glb"), params);
+  const Reimported lines = reimport(in("lines.glb"));
+  ASSERT_EQ(lines.error, "");
+  expectSameSegments(lines.segments, true);
+  const Reimported all = reimport(in("map.glb"));
+  EXPECT_EQ(all.points.size(), 300u);
+  EXPECT_EQ(all.segments.size(), kRoom.lines.size() + 20 * 8 + 199);
+  EXPECT_THAT(all.nodes, ::testing::IsSupersetOf({"Map", "Lines", "Lines No group", "Lines Group 0", "Lines Group 2",
+                                                  "Points", "Keyframes", "Trajectory"}));
+  params.style = LineStyle::kTubes;
+  exportMap(kRoom, in("tubes.glb"), params);
+  EXPECT_EQ(reimport(in("tubes.glb")).triangles, 12 * kRoom.lines.size());
+}
+
+TEST_F(MapExport, CsvHoldsTheColumnsLosslessly) {
+  LineMap map = kRoom;
+  map.lines.resize(2);
+  map.lines[0].segment_w = {{0.1, -1e-17, 3}, {1e10, 1.0 / 3, -0.0}};
+  map.lines[0].last_t_ns = -1500000000;
+  exportMap(map, in("map.csv"));
+  const std::string text = content(in("map.csv"));
+  EXPECT_EQ(text.substr(0, text.find('\n')),
+            "id,x0,y0,z0,x1,y1,z1,observations,first_s,last_s,sigma_direction_rad,sigma_distance_m,degenerate,"
+            "constrained,group");
+  EXPECT_THAT(
+      text,
+      ::testing::HasSubstr(
+          "\n10,0.1,-1e-17,3,1e+10,0.3333333333333333,-0,2,1403636579.763555584,-1.500000000,0.001,0.003,0,1,0\n"));
+  EXPECT_EQ(std::count(text.begin(), text.end(), '\n'), 3);
+}
+
+TEST_F(MapExport, FiltersAndColoursAreHeeded) {
+  ExportParams params;
+  params.min_observations = 4;
+  params.min_length_m = 0.5;
+  params.max_sigma_m = 0.02;
+  const ExportSummary summary = exportMap(kRoom, in("map.csv"), params);
+  std::size_t wanted = 0;
+  for (const MapLine& line : kRoom.lines)
+    wanted += line.observations.size() >= 4 && line.segment_w.length() >= 0.5 && line.sigma_distance_m <= 0.02;
+  EXPECT_EQ(summary.lines, wanted);
+  EXPECT_EQ(summary.filtered, kRoom.lines.size() - wanted);
+  EXPECT_GT(wanted, 0u);
+  std::set<std::string> different;
+  for (const LineColour colour :
+       {LineColour::kKind, LineColour::kGroup, LineColour::kUncertainty, LineColour::kHeight}) {
+    params.colour = colour;
+    exportMap(kRoom, in("map.ply"), params);
+    different.insert(content(in("map.ply")));
+  }
+  EXPECT_EQ(different.size(), 4u);
+}
+
+TEST_F(MapExport, NotFiniteLinesAreDroppedAndCounted) {
+  LineMap map = kRoom;
+  map.lines[0].segment_w.start.x() = std::nan("");
+  map.lines[1].segment_w.end.z() = std::numeric_limits<double>::infinity();
+  map.lines[2].segment_w.end = map.lines[2].segment_w.start;
+  map.points[0].p_w.y() = -std::numeric_limits<double>::infinity();
+  map.keyframes[0].T_w_b.p.x() = std::nan("");
+  map.trajectory[3].second.p.x() = std::nan("");
+  for (const std::string& extension : exportFormats()) {
+    ExportParams params;
+    params.layers = {MapLayer::kLines, MapLayer::kPoints, MapLayer::kKeyframes, MapLayer::kTrajectory};
+    const ExportSummary summary = exportMap(map, in("map." + extension), params);
+    EXPECT_EQ(summary.lines, kRoom.lines.size() - 3) << extension;
+    EXPECT_EQ(summary.dropped, 6u) << extension;
+  }
+  for (const char* name : {"map.obj", "map.ply", "map.csv"}) {
+    const std::string text = content(in(name));
+    EXPECT_EQ(text.find("nan"), std::string::npos) << name;
+    EXPECT_EQ(text.find("inf"), std::string::npos) << name;
+  }
+}
+
+TEST_F(MapExport, UnknownExtensionsAndParametersAreNamed) {
+  EXPECT_THROW(exportMap(kRoom, in("map.stl")), ExportError);
+  EXPECT_THROW(exportMap(kRoom, in("map")), ExportError);
+  ExportParams params;
+  params.radius_m = std::nan("");
+  EXPECT_THROW(exportMap(kRoom, in("map.ply"), params), ExportError);
+  EXPECT_EQ(filesInFolder(), 0);
+  EXPECT_NO_THROW(exportMap(kRoom, in("MAP.PLY")));
+}
+
+class EveryFormat : public FolderTest, public ::testing::WithParamInterface<std::string> {
+ protected:
+  std::string map() const { return in("map." + GetParam()); }
+};
+
+TEST_P(EveryFormat, IsTheSameFromRunToRun) {
+  exportMap(kRoom, map());
+  const std::string first = content(map());
+  exportMap(kRoom, map());
+  EXPECT_GT(first.size(), 100u);
+  EXPECT_TRUE(content(map()) == first);
+}
+
+TEST_P(EveryFormat, TakesAnEmptyMapAndASingleLine) {
+  exportMap({}, map());
+  EXPECT_GT(content(map()).size(), 40u);
+  LineMap one;
+  addLine(one, {0, 0, 0}, {0, 0, 1}, -1);
+  EXPECT_EQ(exportMap(one, map()).lines, 1u);
+  EXPECT_GT(content(map()).size(), 100u);
+}
+
+TEST_P(EveryFormat, ReportsAFullDiskAndLeavesNoFile) {
+  EXPECT_THROW(exportMap(kRoom, in("missing/map." + GetParam())), ExportError);
+  std::filesystem::create_symlink("/dev/full", map());
+  EXPECT_THROW(exportMap(kRoom, map()), ExportError);
+  std::filesystem::remove(map());
+  EXPECT_EQ(filesInFolder(), 0);
+}
+
+TEST_P(EveryFormat, CopesWithExtremeNumbers) {
+  LineMap extreme;
+  addLine(extreme, {1e29, 0, 0}, {1e29, 1e29, 1}, 0);
+  addLine(extreme, {1e7, 1e7, 1e7}, {1e7 + 2, 1e7, 1e7}, 2000000000);
+  addLine(extreme, {1e-30, 0, 0}, {2e-30, 0, 0}, -7);
+  extreme.lines[0].sigma_distance_m = std::nan("");
+  EXPECT_EQ(exportMap(extreme, map()).lines, 3u);
+}
+
+INSTANTIATE_TEST_SUITE_P(Export, EveryFormat, ::testing::ValuesIn(exportFormats()),
+                         [](const auto& test) { return test.param; });
+
+TEST_F(MapExport, TwoHundredThousandLinesToGlbInThreeSeconds) {
+  const LineMap map = manyLines(200000);
+  const auto begin = std::chrono::steady_clock::now();
+  EXPECT_EQ(exportMap(map, in("map.glb")).lines, 200000u);
+  const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+  RecordProperty("seconds", std::to_string(seconds));
+  std::cout << "200000 lines to glb: " << seconds << " s, " << std::filesystem::file_size(in("map.glb")) << " bytes\n";
+}
+
+}  // namespace
+}  // namespace lintel
