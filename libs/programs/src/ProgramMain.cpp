@@ -5,10 +5,6 @@
 #include <CLI/Config.hpp>
 #include <CLI/Formatter.hpp>
 #include <algorithm>
-#include <cerrno>
-#include <cstdio>
-#include <cstring>
-#include <fstream>
 #include <new>
 #include <ostream>
 
@@ -49,22 +45,6 @@ std::optional<int> parseArguments(CLI::App& app, int argc, const char* const* ar
     return 2;
   }
   return std::nullopt;
-}
-
-void writeFileAtomically(const std::string& path, const std::string& content) {
-  const std::string beside = path + ".part";
-  const auto fail = [&] {
-    const int error = errno;
-    std::remove(beside.c_str());
-    throw std::runtime_error(path + ": cannot be written (" + std::strerror(error) +
-                             "); check the folder and its disk");
-  };
-  errno = 0;
-  std::ofstream file(beside, std::ios::binary | std::ios::trunc);
-  if (!file) fail();
-  file.write(content.data(), static_cast<std::streamsize>(content.size()));
-  file.close();
-  if (!file || std::rename(beside.c_str(), path.c_str()) != 0) fail();
 }
 
 }  // namespace lintel

@@ -28,8 +28,4 @@ int programMain(const std::string& name, std::ostream& err, const std::function<
 std::optional<int> parseArguments(CLI::App& app, int argc, const char* const* argv, std::ostream& out,
                                   std::ostream& err);
 
-/// Writes `content` beside `path` and renames it to `path`, so that there is never half a file of that name. Throws
-/// std::runtime_error naming the path and what the system says; `path` is then as it was.
-void writeFileAtomically(const std::string& path, const std::string& content);
-
 }  // namespace lintel

@@ -5,7 +5,8 @@
 
 namespace lintel {
 
-/// The program lintel-eval: errors of a trajectory against its ground truth. Returns the exit code (0 done, 1 bad
+/// The program lintel-eval: errors of a trajectory against its ground truth, and of a line map
+/// against the true lines. Returns the exit code (0 done, 1 bad
 /// input, 2 usage); figures go to `out`, one line about what went wrong to `err`.
 int runLintelEval(int argc, const char* const* argv, std::ostream& out, std::ostream& err);
 

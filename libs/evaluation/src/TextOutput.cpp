@@ -1,12 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "lintel/evaluation/TrajectoryOutput.h"
+#include "lintel/evaluation/Output.h"
 
 #include <cmath>
 #include <iomanip>
 #include <ostream>
 #include <sstream>
-
-#include "JsonFigures.h"
 
 namespace lintel {
 
@@ -40,11 +38,17 @@ void printRelative(const std::vector<RelativeErrors>& relative, std::ostream& ou
   }
 }
 
-Json jsonOf(const Similarity& s) {
-  const Pose& T = s.T_a_b;
-  return {{"scale", s.scale},
-          {"quaternion_xyzw", {T.q.x(), T.q.y(), T.q.z(), T.q.w()}},
-          {"translation_m", {T.p.x(), T.p.y(), T.p.z()}}};
+void printShares(const char* name, const std::vector<double>& tolerances_m, const std::vector<double>& shares,
+                 std::ostream& out) {
+  out << std::left << std::setw(16) << name;
+  for (std::size_t i = 0; i < shares.size(); ++i)
+    out << (i > 0 ? "  " : "") << fixed(shares[i], 3) << " @" << fixed(100 * tolerances_m[i], 0) << " cm";
+}
+
+void printSegmentErrors(const char* name, const SegmentErrors& e, std::ostream& out) {
+  out << "  " << std::left << std::setw(18) << name << std::right << std::setw(6) << e.count << "  direction median "
+      << fixed(e.direction_median_rad * kDegrees, 2) << "  p90 " << fixed(e.direction_p90_rad * kDegrees, 2)
+      << " deg  distance median " << fixed(e.distance_median_m, 3) << " m\n";
 }
 
 }  // namespace
@@ -62,28 +66,16 @@ void printText(const TrajectoryErrors& e, std::ostream& out) {
   printRelative(e.relative, out);
 }
 
-std::string toJson(const TrajectoryErrors& e) {
-  Json relative = Json::array();
-  for (const RelativeErrors& r : e.relative)
-    relative.push_back({{"distance_m", r.distance_m},
-                        {"whole_path", r.whole_path},
-                        {"translation_m", lintel::jsonOf(r.translation_m)},
-                        {"rotation_rad", lintel::jsonOf(r.rotation_rad)}});
-  const Json json = {{"poses", e.poses},
-                     {"pairs", e.pairs},
-                     {"start_offset_s", e.start_offset_s},
-                     {"duration_s", e.duration_s},
-                     {"path_m", e.path_m},
-                     {"coverage_time", e.coverage_time},
-                     {"coverage_path", e.coverage_path},
-                     {"alignment", nameOf(e.alignment)},
-                     {"transform", jsonOf(e.S_truth_estimate)},
-                     {"position_m", lintel::jsonOf(e.position_m)},
-                     {"rotation_rad", lintel::jsonOf(e.rotation_rad)},
-                     {"scale", e.scale},
-                     {"position_sim3_m", lintel::jsonOf(e.position_sim3_m)},
-                     {"relative", relative}};
-  return json.dump(2);
+void printText(const LineErrors& e, std::ostream& out) {
+  out << "lines           " << e.lines << " of " << fixed(e.length_m, 1) << " m, " << e.degenerate << " degenerate\n";
+  printShares("precision", e.tolerances_m, e.precision, out);
+  out << "  of the map on true edges\n";
+  printShares("recall", e.tolerances_m, e.recall, out);
+  out << "  of " << fixed(e.observable_m, 1) << " m observable edges\n";
+  out << "duplicates      " << fixed(e.duplicates, 2) << "\nmatched segments\n";
+  printSegmentErrors("all", e.all_matched, out);
+  printSegmentErrors("well determined", e.well_determined_matched, out);
+  printSegmentErrors("degenerate", e.degenerate_matched, out);
 }
 
 }  // namespace lintel

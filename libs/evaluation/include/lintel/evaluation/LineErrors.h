@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstddef>
+#include <limits>
+#include <vector>
+
+#include "lintel/evaluation/TrueLines.h"
+#include "lintel/geometry/Alignment.h"
+#include "lintel/mapping/LineMap.h"
+
+namespace lintel {
+
+struct LineErrorParams {
+  std::vector<double> tolerances_m = {0.02, 0.05, 0.10};  ///< distances up to which a piece counts as right [m]
+  double step_m = 0.02;                                   ///< length of the pieces that segments are cut into [m]
+  double max_angle_rad = 0.26179938779914943654;          ///< between a right segment and its edge: 15 degrees
+  double match_distance_m = 0.25;                   ///< a piece votes for the nearest edge within this distance …
+  double match_angle_rad = 0.52359877559829887308;  ///< … and this angle: 30 degrees
+  double observable_length_m = 0.5;                 ///< edges count for recall from this length …
+  int observable_frames = 60;                       ///< … if at least so many frames show them
+};
+
+/// Errors of the map's segments that have a true edge; NaN where there is none. Quantile q of n is the sorted value
+/// number floor(q n), counted from 0.
+struct SegmentErrors {
+  std::size_t count = 0;
+  double direction_median_rad = std::numeric_limits<double>::quiet_NaN();
+  double direction_p90_rad = std::numeric_limits<double>::quiet_NaN();
+  double distance_median_m = std::numeric_limits<double>::quiet_NaN();  ///< mean of both ends' distances to the edge
+};
+
+/// How far a line map is from the true edges. Shares are of length, one for each tolerance; NaN where there is no
+/// length.
+struct LineErrors {
+  std::size_t lines = 0, degenerate = 0;
+  double length_m = 0;      ///< of the map
+  double observable_m = 0;  ///< length of the true edges that count for recall
+  std::vector<double> tolerances_m;
+  std::vector<double> precision;  ///< share of the map within tolerance and angle of a true edge
+  std::vector<double> recall;     ///< share of the observable edges within tolerance and angle of the map
+  SegmentErrors all_matched, degenerate_matched, well_determined_matched;
+  double duplicates =
+      std::numeric_limits<double>::quiet_NaN();  ///< matched length / length of the edges it covers; 1 = none
+};
+
+/// Compares the lines of a map, moved by `S_truth_map`, with the true edges. A segment is matched to the edge that most
+/// of its pieces vote for, if that is at least half of them.
+LineErrors evaluateLines(const std::vector<MapLine>& lines, const Similarity& S_truth_map,
+                         const std::vector<TrueLine>& truth, const LineErrorParams& params = {});
+
+}  // namespace lintel

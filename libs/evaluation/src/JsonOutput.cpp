@@ -1,0 +1,87 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <nlohmann/json.hpp>
+
+#include "lintel/evaluation/Output.h"
+
+namespace lintel {
+
+namespace {
+
+/// Keeps the keys in the order in which they are written.
+using Json = nlohmann::ordered_json;
+
+Json jsonOf(const ErrorStatistics& statistics) {
+  return {{"count", statistics.count},
+          {"rmse", statistics.rmse},
+          {"mean", statistics.mean},
+          {"median", statistics.median},
+          {"max", statistics.max}};
+}
+
+Json jsonOf(const Similarity& s) {
+  const Pose& T = s.T_a_b;
+  return {{"scale", s.scale},
+          {"quaternion_xyzw", {T.q.x(), T.q.y(), T.q.z(), T.q.w()}},
+          {"translation_m", {T.p.x(), T.p.y(), T.p.z()}}};
+}
+
+Json jsonOf(const std::vector<RelativeErrors>& relative) {
+  Json json = Json::array();
+  for (const RelativeErrors& r : relative)
+    json.push_back({{"distance_m", r.distance_m},
+                    {"whole_path", r.whole_path},
+                    {"translation_m", jsonOf(r.translation_m)},
+                    {"rotation_rad", jsonOf(r.rotation_rad)}});
+  return json;
+}
+
+Json jsonOf(const TrajectoryErrors& e) {
+  return {{"poses", e.poses},
+          {"pairs", e.pairs},
+          {"start_offset_s", e.start_offset_s},
+          {"duration_s", e.duration_s},
+          {"path_m", e.path_m},
+          {"coverage_time", e.coverage_time},
+          {"coverage_path", e.coverage_path},
+          {"alignment", nameOf(e.alignment)},
+          {"transform", jsonOf(e.S_truth_estimate)},
+          {"position_m", jsonOf(e.position_m)},
+          {"rotation_rad", jsonOf(e.rotation_rad)},
+          {"scale", e.scale},
+          {"position_sim3_m", jsonOf(e.position_sim3_m)},
+          {"relative", jsonOf(e.relative)}};
+}
+
+Json jsonOf(const SegmentErrors& e) {
+  return {{"count", e.count},
+          {"direction_median_rad", e.direction_median_rad},
+          {"direction_p90_rad", e.direction_p90_rad},
+          {"distance_median_m", e.distance_median_m}};
+}
+
+Json jsonOf(const LineErrors& e) {
+  return {{"lines", e.lines},
+          {"degenerate", e.degenerate},
+          {"length_m", e.length_m},
+          {"observable_m", e.observable_m},
+          {"tolerances_m", e.tolerances_m},
+          {"precision", e.precision},
+          {"recall", e.recall},
+          {"duplicates", e.duplicates},
+          {"all_matched", jsonOf(e.all_matched)},
+          {"well_determined_matched", jsonOf(e.well_determined_matched)},
+          {"degenerate_matched", jsonOf(e.degenerate_matched)}};
+}
+
+}  // namespace
+
+std::string toJson(const std::optional<TrajectoryErrors>& trajectory,
+                   const std::optional<TrajectoryErrors>& map_trajectory, const std::optional<LineErrors>& lines) {
+  Json json = Json::object();
+  if (trajectory) json["trajectory"] = jsonOf(*trajectory);
+  if (map_trajectory) json["map_trajectory"] = jsonOf(*map_trajectory);
+  if (lines) json["lines"] = jsonOf(*lines);
+  return json.dump(2) + "\n";
+}
+
+}  // namespace lintel

@@ -1,0 +1,166 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "lintel/evaluation/LineErrors.h"
+
+#include <algorithm>
+#include <map>
+#include <utility>
+
+#include "LineMatching.h"
+
+namespace lintel {
+
+namespace {
+
+struct AlignedLine {
+  Segment3 segment;
+  bool degenerate;
+};
+
+std::vector<AlignedLine> alignedLines(const std::vector<MapLine>& lines, const Similarity& S_truth_map) {
+  std::vector<AlignedLine> result;
+  for (const MapLine& line : lines) {
+    const Segment3 segment{S_truth_map * line.segment_w.start, S_truth_map * line.segment_w.end};
+    if (segment.length() > 1e-6 && segment.start.allFinite() && segment.end.allFinite())
+      result.push_back({segment, line.degenerate});
+  }
+  return result;
+}
+
+/// Shares of a length, one for each tolerance.
+class Shares {
+ public:
+  explicit Shares(std::vector<double> tolerances_m)
+      : tolerances_m_(std::move(tolerances_m)), right_m_(tolerances_m_.size(), 0.0) {}
+
+  /// A piece of `length_m` that is `distance_m` off.
+  void add(double length_m, double distance_m) {
+    total_m_ += length_m;
+    for (std::size_t i = 0; i < right_m_.size(); ++i)
+      if (distance_m <= tolerances_m_[i]) right_m_[i] += length_m;
+  }
+  std::vector<double> result() const {
+    std::vector<double> shares;
+    for (const double right_m : right_m_) shares.push_back(right_m / total_m_);  // 0 / 0 is NaN: no length
+    return shares;
+  }
+
+ private:
+  std::vector<double> tolerances_m_, right_m_;
+  double total_m_ = 0;
+};
+
+/// Collects the errors of matched segments.
+class ErrorCollector {
+ public:
+  void add(const Segment3& segment, const Segment3& edge) {
+    direction_rad_.push_back(lineAngle(segment.direction(), edge.direction()));
+    distance_m_.push_back(0.5 * (distanceToSegment(segment.start, edge) + distanceToSegment(segment.end, edge)));
+  }
+  SegmentErrors result() const {
+    return {direction_rad_.size(), quantile(direction_rad_, 0.5), quantile(direction_rad_, 0.9),
+            quantile(distance_m_, 0.5)};
+  }
+
+ private:
+  static double quantile(std::vector<double> values, double q) {
+    if (values.empty()) return std::numeric_limits<double>::quiet_NaN();
+    const auto index = std::min(values.size() - 1, static_cast<std::size_t>(q * static_cast<double>(values.size())));
+    const auto nth = values.begin() + static_cast<std::ptrdiff_t>(index);
+    std::nth_element(values.begin(), nth, values.end());
+    return *nth;
+  }
+
+  std::vector<double> direction_rad_, distance_m_;
+};
+
+/// How much of the edges is covered, and how often.
+class CoverCount {
+ public:
+  void add(std::size_t edge_index, const Segment3& segment, const Segment3& edge) {
+    const auto along = [&](const Eigen::Vector3d& p) {
+      return std::clamp((p - edge.start).dot(edge.direction()), 0.0, edge.length());
+    };
+    const auto [from, to] = std::minmax({along(segment.start), along(segment.end)});
+    if (to > from) intervals_[edge_index].emplace_back(from, to);
+  }
+  /// Sum of the intervals' lengths over the length of their union.
+  double duplicates() const {
+    double sum_m = 0, union_m = 0;
+    for (auto [edge_index, intervals] : intervals_) {
+      std::sort(intervals.begin(), intervals.end());
+      double end = 0;
+      for (const auto& [from, to] : intervals) {
+        sum_m += to - from;
+        union_m += std::max(0.0, to - std::max(from, end));
+        end = std::max(end, to);
+      }
+    }
+    return sum_m / union_m;
+  }
+
+ private:
+  std::map<std::size_t, std::vector<std::pair<double, double>>> intervals_;
+};
+
+void addPrecision(LineErrors& result, const std::vector<AlignedLine>& lines, const std::vector<TrueLine>& truth,
+                  const LineErrorParams& params) {
+  Shares precision(params.tolerances_m);
+  ErrorCollector all, degenerate, well_determined;
+  CoverCount cover;
+  for (const AlignedLine& line : lines) {
+    const LineMatch match = matchLine(line.segment, truth, params);
+    const double piece_m = line.segment.length() / static_cast<double>(match.distances_m.size());
+    for (const double distance_m : match.distances_m) precision.add(piece_m, distance_m);
+    if (!match.edge) continue;
+    const Segment3& edge = truth[*match.edge].segment_w;
+    all.add(line.segment, edge);
+    (line.degenerate ? degenerate : well_determined).add(line.segment, edge);
+    cover.add(*match.edge, line.segment, edge);
+  }
+  result.precision = precision.result();
+  result.all_matched = all.result();
+  result.degenerate_matched = degenerate.result();
+  result.well_determined_matched = well_determined.result();
+  result.duplicates = cover.duplicates();
+}
+
+void addRecall(LineErrors& result, const std::vector<AlignedLine>& lines, const std::vector<TrueLine>& truth,
+               const LineErrorParams& params) {
+  Shares recall(params.tolerances_m);
+  for (const TrueLine& true_line : truth) {
+    const Segment3& edge = true_line.segment_w;
+    if (edge.length() < params.observable_length_m || true_line.frames_seen < params.observable_frames) continue;
+    result.observable_m += edge.length();
+    std::vector<const Segment3*> near;
+    for (const AlignedLine& line : lines)
+      if (lineAngle(line.segment.direction(), edge.direction()) < params.max_angle_rad &&
+          distanceToSegment(line.segment.midpoint(), edge) < 0.5 * line.segment.length() + 0.2)
+        near.push_back(&line.segment);
+    const auto pieces = piecesOf(edge, params.step_m);
+    for (const Eigen::Vector3d& p : pieces) {
+      double distance_m = std::numeric_limits<double>::infinity();
+      for (const Segment3* segment : near) distance_m = std::min(distance_m, distanceToSegment(p, *segment));
+      recall.add(edge.length() / static_cast<double>(pieces.size()), distance_m);
+    }
+  }
+  result.recall = recall.result();
+}
+
+}  // namespace
+
+LineErrors evaluateLines(const std::vector<MapLine>& lines, const Similarity& S_truth_map,
+                         const std::vector<TrueLine>& truth, const LineErrorParams& params) {
+  const std::vector<AlignedLine> aligned = alignedLines(lines, S_truth_map);
+  LineErrors result;
+  result.tolerances_m = params.tolerances_m;
+  result.lines = aligned.size();
+  for (const AlignedLine& line : aligned) {
+    result.degenerate += line.degenerate ? 1 : 0;
+    result.length_m += line.segment.length();
+  }
+  addPrecision(result, aligned, truth, params);
+  addRecall(result, aligned, truth, params);
+  return result;
+}
+
+}  // namespace lintel
