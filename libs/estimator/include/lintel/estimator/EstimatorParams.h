@@ -1,0 +1,163 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+namespace lintel {
+
+/// How observations become residuals.
+struct FactorParams {
+  double point_sigma_px = 1.0;        ///< standard deviation of a tracked point [px]
+  double point_loss_width = 1.5;      ///< Cauchy width, in standard deviations
+  double line_sigma_px = 1.0;         ///< scales LineObservation::sigma_px
+  double line_loss_width = 1.5;       ///< Cauchy width, in standard deviations
+  double gyro_noise_scale = 1.0;      ///< of the rig's noise density: calibrated densities omit vibration
+  double accel_noise_scale = 1.0;
+  double gyro_walk_scale = 1.0;
+  double accel_walk_scale = 1.0;
+
+  template <class F>
+  void fields(F&& field) {
+    field("point_sigma_px", point_sigma_px);
+    field("point_loss_width", point_loss_width);
+    field("line_sigma_px", line_sigma_px);
+    field("line_loss_width", line_loss_width);
+    field("gyro_noise_scale", gyro_noise_scale);
+    field("accel_noise_scale", accel_noise_scale);
+    field("gyro_walk_scale", gyro_walk_scale);
+    field("accel_walk_scale", accel_walk_scale);
+  }
+};
+
+/// What of the calibration is refined, and how well it is known before (standard deviations of the priors).
+struct CalibrationParams {
+  bool refine_extrinsics = true;
+  bool refine_camera = true;                 ///< fx fy cx cy k1 k2
+  bool refine_time_offset = true;
+  double extrinsic_rotation_sigma_rad = 0.005;
+  double extrinsic_translation_sigma_m = 0.005;
+  double focal_sigma_px = 1.0;
+  double centre_sigma_px = 1.0;
+  double distortion_sigma = 0.003;
+  double time_offset_sigma_s = 0.002;
+
+  template <class F>
+  void fields(F&& field) {
+    field("refine_extrinsics", refine_extrinsics);
+    field("refine_camera", refine_camera);
+    field("refine_time_offset", refine_time_offset);
+    field("extrinsic_rotation_sigma_rad", extrinsic_rotation_sigma_rad);
+    field("extrinsic_translation_sigma_m", extrinsic_translation_sigma_m);
+    field("focal_sigma_px", focal_sigma_px);
+    field("centre_sigma_px", centre_sigma_px);
+    field("distortion_sigma", distortion_sigma);
+    field("time_offset_sigma_s", time_offset_sigma_s);
+  }
+};
+
+/// When a track becomes part of the problem, and when it is thrown out.
+struct LandmarkParams {
+  int point_min_observations = 3;        ///< window frames
+  double point_max_error_px = 3.0;       ///< mean reprojection error above which a track is an outlier
+  double max_depth_m = 200;
+  double min_depth_m = 0.1;
+  int line_min_observations = 4;         ///< window frames
+  double line_max_error_px = 3.0;        ///< mean distance of the end points
+  double line_max_sigma_direction_rad = 0.10;  ///< above: degenerate, direction unknown
+  double line_max_sigma_distance = 0.10;       ///< of the depth; above: degenerate, distance unknown
+
+  template <class F>
+  void fields(F&& field) {
+    field("point_min_observations", point_min_observations);
+    field("point_max_error_px", point_max_error_px);
+    field("max_depth_m", max_depth_m);
+    field("min_depth_m", min_depth_m);
+    field("line_min_observations", line_min_observations);
+    field("line_max_error_px", line_max_error_px);
+    field("line_max_sigma_direction_rad", line_max_sigma_direction_rad);
+    field("line_max_sigma_distance", line_max_sigma_distance);
+  }
+};
+
+/// The way into the window; see Initializer.
+struct InitializerParams {
+  int min_frames = 10;                   ///< window frames (estimator rate) before the first attempt
+  int max_frames = 20;                   ///< older ones are dropped
+  double min_parallax_px = 12;           ///< rotation-compensated, median, over the buffer; below: static or waiting
+  double max_error_px = 1.5;             ///< median reprojection error of an accepted start
+  double max_scale_sigma = 0.15;         ///< relative standard deviation of the scale of an accepted start
+  double max_bias_accel = 1.5;           ///< [m/s^2]
+  double bias_gyro_sigma = 0.1;          ///< prior [rad/s]
+  double bias_accel_sigma = 0.2;         ///< prior [m/s^2]
+  double static_disparity_px = 0.7;      ///< median motion of points over the buffer below which the vehicle rests
+  double static_gyro_std = 0.03;         ///< [rad/s] and
+  double static_accel_std = 0.4;         ///< [m/s^2]: standard deviations over the buffer at rest
+
+  template <class F>
+  void fields(F&& field) {
+    field("min_frames", min_frames);
+    field("max_frames", max_frames);
+    field("min_parallax_px", min_parallax_px);
+    field("max_error_px", max_error_px);
+    field("max_scale_sigma", max_scale_sigma);
+    field("max_bias_accel", max_bias_accel);
+    field("bias_gyro_sigma", bias_gyro_sigma);
+    field("bias_accel_sigma", bias_accel_sigma);
+    field("static_disparity_px", static_disparity_px);
+    field("static_gyro_std", static_gyro_std);
+    field("static_accel_std", static_accel_std);
+  }
+};
+
+/// What counts as lost.
+struct FailureParams {
+  int min_points = 4;                    ///< points and lines tracked into the newest frame; with fewer it is blind
+  int max_blind_frames = 20;             ///< window frames in a row that the IMU may bridge
+  double max_bias_accel = 2.5;           ///< [m/s^2] [Qin2018]
+  double max_bias_gyro = 1.0;            ///< [rad/s] [Qin2018]
+  double max_step_m = 2.0;               ///< difference between the predicted and the estimated position of a frame
+  double max_step_rad = 0.5;
+
+  template <class F>
+  void fields(F&& field) {
+    field("min_points", min_points);
+    field("max_blind_frames", max_blind_frames);
+    field("max_bias_accel", max_bias_accel);
+    field("max_bias_gyro", max_bias_gyro);
+    field("max_step_m", max_step_m);
+    field("max_step_rad", max_step_rad);
+  }
+};
+
+struct EstimatorParams {
+  int every_nth_frame = 2;               ///< frames that enter the window; the others get an IMU-propagated pose
+  int keyframes = 10;                    ///< in the window, beside the newest frame [Qin2018]
+  double keyframe_parallax_px = 10;      ///< mean motion of the points since the last keyframe [Qin2018]
+  int keyframe_min_tracked = 20;         ///< fewer points shared with the last keyframe make a new one
+  double max_keyframe_interval_s = 10;   ///< a keyframe at least this often, also at rest
+  int max_iterations = 8;
+  double rest_disparity_px = 0.25;       ///< median motion between window frames below which rest is assumed
+  double rest_velocity_sigma = 0.01;     ///< zero-velocity observation at rest [m/s]
+  FactorParams factors;
+  CalibrationParams calibration;
+  LandmarkParams landmarks;
+  InitializerParams initializer;
+  FailureParams failure;
+
+  template <class F>
+  void fields(F&& field) {
+    field("every_nth_frame", every_nth_frame);
+    field("keyframes", keyframes);
+    field("keyframe_parallax_px", keyframe_parallax_px);
+    field("keyframe_min_tracked", keyframe_min_tracked);
+    field("max_keyframe_interval_s", max_keyframe_interval_s);
+    field("max_iterations", max_iterations);
+    field("rest_disparity_px", rest_disparity_px);
+    field("rest_velocity_sigma", rest_velocity_sigma);
+    field("factors", factors);
+    field("calibration", calibration);
+    field("landmarks", landmarks);
+    field("initializer", initializer);
+    field("failure", failure);
+  }
+};
+
+}  // namespace lintel

@@ -1,0 +1,145 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <Eigen/Core>
+#include <cstdint>
+#include <deque>
+#include <map>
+#include <memory>
+#include <vector>
+
+#include "lintel/factors/PointFactor.h"
+#include "lintel/factors/PriorFactors.h"
+#include "lintel/factors/StateBlocks.h"
+#include "lintel/inertial/Preintegration.h"
+#include "lintel/sensing/Rig.h"
+#include "lintel/tracking/FrameTracks.h"
+
+namespace lintel {
+
+using FrameId = std::uint64_t;  ///< counts the frames that entered the window
+
+/// Names a parameter block of the window. Blocks move in memory, keys stay.
+struct BlockKey {
+  enum Kind { kPose, kMotion, kExtrinsics, kCorrection, kDepth, kLine };
+  Kind kind = kPose;
+  std::uint64_t id = 0;  ///< frame, point or line; 0 for the calibration
+  bool operator<(const BlockKey& o) const { return kind != o.kind ? kind < o.kind : id < o.id; }
+  bool operator==(const BlockKey& o) const { return kind == o.kind && id == o.id; }
+};
+
+/// A state of the window.
+struct WindowFrame {
+  FrameId id = 0;
+  std::int64_t t_ns = 0;
+  PoseBlock pose = toBlock(Pose{});              ///< T_w_b
+  MotionBlock motion = MotionBlock::Zero();      ///< velocity and biases
+  std::shared_ptr<Preintegration> imu;           ///< from the frame before; null for the first
+  bool at_rest = false;                          ///< gets a zero-velocity observation
+
+  Pose T_w_b() const { return poseFromBlock(pose.data()); }
+};
+
+struct PointSighting {
+  FrameId frame = 0;
+  NormalisedObservation observation;
+  Eigen::Vector2d px = Eigen::Vector2d::Zero();
+};
+
+struct LineSighting {
+  FrameId frame = 0;
+  NormalisedObservation start, end;
+  Eigen::Vector2d start_px = Eigen::Vector2d::Zero(), end_px = Eigen::Vector2d::Zero();
+  double sigma_px = 1;
+  bool detected = true;
+};
+
+/// A point: its host is the first sighting's frame.
+struct PointTrack {
+  TrackId id = 0;
+  std::vector<PointSighting> sightings;           ///< in window frames, in their order
+  std::vector<PointSighting> former;              ///< in keyframes that have left the window
+  double inverse_depth = 0;                       ///< along the host's ray [1/m]
+  double sigma_inverse_depth = 0;
+  bool triangulated = false;
+};
+
+/// A line: world axes, moment about `origin_w`.
+struct LineTrack {
+  TrackId id = 0;
+  std::vector<LineSighting> sightings;
+  std::vector<LineSighting> former;
+  LineBlock line = LineBlock::Zero();
+  Eigen::Vector3d origin_w = Eigen::Vector3d::Zero();
+  bool triangulated = false;
+  bool degenerate = false;
+  double sigma_direction_rad = 0, sigma_distance_m = 0;
+};
+
+/// A prior over some blocks of the window.
+struct WindowPrior {
+  std::vector<BlockKey> blocks;
+  std::shared_ptr<const PriorFactor> factor;
+};
+
+/// The states and tracks of the sliding window; what the other classes of this room work on. Knows no algorithm.
+class SlidingWindow {
+ public:
+  explicit SlidingWindow(const Rig& rig);
+
+  std::deque<WindowFrame> frames;             ///< ascending time; the last is the newest
+  std::map<TrackId, PointTrack> points;       ///< ordered: the same sums in the same order every run
+  std::map<TrackId, LineTrack> lines;
+  PoseBlock extrinsics;                       ///< T_b_c
+  CorrectionBlock correction = CorrectionBlock::Zero();
+  std::vector<WindowPrior> priors;            ///< from marginalisation and from initialisation
+
+  const PinholeRadtan& camera() const { return camera_; }   ///< as calibrated; `correction` is on top
+  PinholeRadtan correctedCamera() const;
+  Pose T_b_c() const { return poseFromBlock(extrinsics.data()); }
+
+  bool contains(FrameId id) const;
+  const WindowFrame& frame(FrameId id) const;                ///< throws std::out_of_range
+  WindowFrame& frame(FrameId id);
+  double* block(const BlockKey& key);                        ///< throws std::out_of_range
+
+  /// Appends a frame and its tracks. `velocities`: d normalised / dt of the points and line ends by track [1/s].
+  void addFrame(WindowFrame frame, const FrameTracks& tracks, const class FeatureVelocities& velocities);
+
+  /// Forgets a frame and its sightings (keeping them in `former` when it was a keyframe). Tracks keep their estimate:
+  /// a point hosted there gets its next sighting as host. Does not touch priors.
+  void removeFrame(FrameId id, bool keyframe);
+
+  /// Depth of a point in the camera of its host moved to `host`'s camera frame; used when the host leaves.
+  static double transferredInverseDepth(const PointTrack& track, const Pose& T_w_c_old, const Pose& T_w_c_new,
+                                        const Eigen::Vector2d& x_old);
+
+  Pose T_w_c(const WindowFrame& f) const { return f.T_w_b() * T_b_c(); }
+
+  /// World position of a triangulated point.
+  Eigen::Vector3d positionOf(const PointTrack& track) const;
+
+ private:
+  PinholeRadtan camera_;
+};
+
+/// Image velocities of the features of one frame on the normalised plane, from the frame before.
+class FeatureVelocities {
+ public:
+  FeatureVelocities() = default;
+  /// Empty unless `before` is earlier than `now`.
+  FeatureVelocities(const FrameTracks& before, const FrameTracks& now);
+  Eigen::Vector2d point(TrackId id) const;
+  Eigen::Vector2d lineStart(TrackId id) const;
+  Eigen::Vector2d lineEnd(TrackId id) const;
+
+ private:
+  std::map<TrackId, Eigen::Vector2d> points_, starts_, ends_;
+};
+
+/// How an observation depends on the camera correction: intrinsics by the camera model, time offset by its velocity.
+/// The image with stamp t shows the world at t + offset.
+NormalisedObservation makeObservation(const PinholeRadtan& camera, const Eigen::Vector2d& normalised,
+                                      const Eigen::Vector2d& velocity);
+
+}  // namespace lintel

@@ -1,0 +1,67 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "lintel/estimator/SlidingWindow.h"
+#include "lintel/geometry/PluckerLine.h"
+#include "lintel/geometry/Pose.h"
+
+namespace lintel {
+
+/// A keyframe that has left the window, with its last estimate.
+struct RetiredKeyframe {
+  FrameId id = 0;
+  std::int64_t t_ns = 0;
+  Pose T_w_b;
+  Eigen::Vector3d v_w_b = Eigen::Vector3d::Zero();
+  ImuBias bias;
+  std::shared_ptr<const Preintegration> imu;  ///< from the keyframe before; null for the first of a run
+};
+
+/// A point that is not tracked any more.
+struct RetiredPoint {
+  TrackId id = 0;
+  Eigen::Vector3d p_w = Eigen::Vector3d::Zero();
+  double sigma_distance_m = 0;
+  std::vector<PointSighting> sightings;  ///< in keyframes
+};
+
+/// A line that is not tracked any more.
+struct RetiredLine {
+  TrackId id = 0;
+  PluckerLine line_w;
+  double sigma_direction_rad = 0, sigma_distance_m = 0;
+  bool degenerate = false;
+  std::vector<LineSighting> sightings;  ///< in keyframes
+};
+
+enum class EstimatorStatus {
+  kInitializing,  ///< no pose yet
+  kTracking,      ///< `T_w_b` is the window's estimate
+  kPropagated,    ///< `T_w_b` is IMU propagation from the last estimate (frames that do not enter the window)
+  kLost,          ///< failure: the window was given up at this frame, initialisation starts again
+};
+
+/// What one frame changed.
+struct WindowUpdate {
+  std::int64_t t_ns = 0;
+  EstimatorStatus status = EstimatorStatus::kInitializing;
+  std::string reason;  ///< of waiting or failure, in words
+  Pose T_w_b;
+  Eigen::Vector3d v_w_b = Eigen::Vector3d::Zero();
+  ImuBias bias;
+  std::vector<RetiredKeyframe> keyframes;
+  std::vector<RetiredPoint> points;
+  std::vector<RetiredLine> lines;
+
+  // figures of this step
+  int points_used = 0, lines_tracked = 0, lines_used = 0, lines_degenerate = 0, iterations = 0;
+  bool keyframe = false, at_rest = false;
+
+  bool hasPose() const { return status == EstimatorStatus::kTracking || status == EstimatorStatus::kPropagated; }
+};
+
+}  // namespace lintel

@@ -1,0 +1,297 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "lintel/estimator/Estimator.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "FailureDetection.h"
+#include "Initializer.h"
+#include "KeyframeSelection.h"
+#include "LineTriangulation.h"
+#include "OutlierRejection.h"
+#include "PointTriangulation.h"
+#include "WindowMarginalization.h"
+#include "WindowRetirement.h"
+#include "WindowSolver.h"
+#include "lintel/geometry/Frames.h"
+#include "lintel/geometry/Rotation.h"
+
+namespace lintel {
+
+namespace {
+
+ImuNoise scaledNoise(const ImuNoise& noise, const FactorParams& p) {
+  return {noise.gyro_noise * p.gyro_noise_scale, noise.gyro_walk * p.gyro_walk_scale,
+          noise.accel_noise * p.accel_noise_scale, noise.accel_walk * p.accel_walk_scale};
+}
+
+/// Where the IMU says a state goes.
+void propagate(const WindowFrame& from, const Preintegration& imu, Pose& T_w_b, Eigen::Vector3d& v_w_b) {
+  const double dt = imu.dt_s();
+  const auto delta = imu.corrected(biasOf(from.motion.data()));
+  const Pose T_w_b0 = from.T_w_b();
+  const Eigen::Vector3d v0 = velocityOf(from.motion.data());
+  T_w_b.q = (T_w_b0.q * delta.delta_R).normalized();
+  T_w_b.p = T_w_b0.p + v0 * dt + 0.5 * gravityW() * dt * dt + T_w_b0.q * delta.delta_p;
+  v_w_b = v0 + gravityW() * dt + T_w_b0.q * delta.delta_v;
+}
+
+}  // namespace
+
+class Estimator::Impl {
+ public:
+  Impl(const Rig& rig, const EstimatorParams& params)
+      : rig_(rig), params_(params), noise_(scaledNoise(rig.imu_noise, params.factors)),
+        initializer_(params_, rig.T_b_c), window_(rig) {}
+
+  WindowUpdate process(const FrameTracks& tracks, const ImuBatch& imu);
+  WindowUpdate finish();
+  CalibrationEstimate calibration() const {
+    return {window_.correctedCamera(), window_.T_b_c(), window_.correction[kTimeOffsetAt]};
+  }
+
+ private:
+  bool appendImu(const FrameTracks& tracks, const ImuBatch& imu);
+  WindowUpdate skipFrame(const FrameTracks& tracks);
+  void addFrame(const FrameTracks& tracks);
+  void initialise(WindowUpdate& update);
+  void track(WindowUpdate& update);
+  void solve(WindowUpdate& update);
+  void shrink(bool second_newest_is_keyframe, WindowUpdate& update);
+  void dropOldest(WindowUpdate& update);
+  void dropSecondNewest(WindowUpdate& update);
+  void fail(const std::string& reason, WindowUpdate& update);
+  void moveToAnchor();
+  void countLandmarks(WindowUpdate& update) const;
+  void fillPose(WindowUpdate& update) const;
+
+  Rig rig_;
+  EstimatorParams params_;
+  ImuNoise noise_;
+  Initializer initializer_;
+  SlidingWindow window_;
+  bool tracking_ = false;
+  std::uint64_t frames_seen_ = 0;
+  FrameId next_frame_id_ = 0;
+  FrameTracks tracks_before_;               // of the frame before, for image velocities
+  ImuBatch pending_imu_;                    // since the newest window frame
+  std::int64_t newest_t_ns_ = 0;
+  int frames_without_points_ = 0;
+  Pose anchor_T_w_b_;                       // where a new start continues
+};
+
+WindowUpdate Estimator::Impl::process(const FrameTracks& tracks, const ImuBatch& imu) {
+  WindowUpdate update;
+  update.t_ns = tracks.t_ns;
+  const bool imu_ok = appendImu(tracks, imu);
+  const bool enters = frames_seen_++ % static_cast<std::uint64_t>(std::max(1, params_.every_nth_frame)) == 0;
+  if (!imu_ok && !window_.frames.empty()) {
+    fail("the IMU has a gap", update);
+  } else if (!enters) {
+    update = skipFrame(tracks);
+  } else {
+    addFrame(tracks);
+    tracking_ ? track(update) : initialise(update);
+  }
+  tracks_before_ = tracks;
+  return update;
+}
+
+/// False when the samples do not cover the time since the frame before.
+bool Estimator::Impl::appendImu(const FrameTracks& tracks, const ImuBatch& imu) {
+  const std::int64_t covered_from = pending_imu_.empty() ? newest_t_ns_ : pending_imu_.back().t_ns;
+  for (const ImuSample& sample : imu)
+    if (pending_imu_.empty() || sample.t_ns > pending_imu_.back().t_ns) pending_imu_.push_back(sample);
+  constexpr std::int64_t kSlack_ns = 20'000'000;
+  return !imu.empty() && imu.front().t_ns <= covered_from + kSlack_ns && imu.back().t_ns >= tracks.t_ns - kSlack_ns;
+}
+
+WindowUpdate Estimator::Impl::skipFrame(const FrameTracks& tracks) {
+  WindowUpdate update;
+  update.t_ns = tracks.t_ns;
+  update.reason = "between window frames";
+  if (!tracking_) return update;
+  Preintegration imu(biasOf(window_.frames.back().motion.data()), noise_);
+  imu.append(pending_imu_);
+  propagate(window_.frames.back(), imu, update.T_w_b, update.v_w_b);
+  update.bias = biasOf(window_.frames.back().motion.data());
+  update.status = EstimatorStatus::kPropagated;
+  return update;
+}
+
+void Estimator::Impl::addFrame(const FrameTracks& tracks) {
+  WindowFrame frame;
+  frame.id = next_frame_id_++;
+  frame.t_ns = tracks.t_ns;
+  if (!window_.frames.empty()) {
+    const WindowFrame& before = window_.frames.back();
+    frame.imu = std::make_shared<Preintegration>(biasOf(before.motion.data()), noise_);
+    frame.imu->append(pending_imu_);
+    Pose T_w_b;
+    Eigen::Vector3d v_w_b;
+    propagate(before, *frame.imu, T_w_b, v_w_b);
+    frame.pose = toBlock(T_w_b);
+    frame.motion = before.motion;
+    frame.motion.segment<3>(kVelocityAt) = v_w_b;
+  }
+  pending_imu_.erase(pending_imu_.begin(), pending_imu_.empty() ? pending_imu_.end() : pending_imu_.end() - 1);
+  newest_t_ns_ = tracks.t_ns;
+  window_.addFrame(std::move(frame), tracks, FeatureVelocities(tracks_before_, tracks));
+}
+
+void Estimator::Impl::initialise(WindowUpdate& update) {
+  while (static_cast<int>(window_.frames.size()) > params_.initializer.max_frames) {
+    WindowUpdate nothing;
+    retireTracks(window_, window_.frames.front().id, false, nothing);
+    window_.removeFrame(window_.frames.front().id, false);
+    window_.frames.front().imu.reset();
+  }
+  SlidingWindow buffer = window_;
+  buffer.frames.front().imu.reset();
+  update.reason = initializer_.initialise(buffer);
+  if (!update.reason.empty()) return;
+  window_ = std::move(buffer);
+  moveToAnchor();
+  tracking_ = true;
+  frames_without_points_ = 0;
+  solve(update);
+  update.status = EstimatorStatus::kTracking;
+  while (static_cast<int>(window_.frames.size()) > params_.keyframes) dropOldest(update);
+  fillPose(update);
+}
+
+void Estimator::Impl::moveToAnchor() {
+  const Pose T{Eigen::Quaterniond(Eigen::AngleAxisd(yawOf(anchor_T_w_b_.q), Eigen::Vector3d::UnitZ())), anchor_T_w_b_.p};
+  for (WindowFrame& frame : window_.frames) {
+    frame.pose = toBlock(T * frame.T_w_b());
+    frame.motion.segment<3>(kVelocityAt) = T.q * velocityOf(frame.motion.data());
+  }
+}
+
+void Estimator::Impl::track(WindowUpdate& update) {
+  WindowFrame& newest = window_.frames.back();
+  const Pose predicted = newest.T_w_b();
+  newest.at_rest = isAtRest(window_, params_);
+  const bool keyframe = secondNewestIsKeyframe(window_, params_);
+  solve(update);
+  frames_without_points_ = pointsInNewest(window_) + linesInNewest(window_) < params_.failure.min_points &&
+                                   !window_.frames.back().at_rest
+                               ? frames_without_points_ + 1
+                               : 0;
+  std::string failure = findFailure(window_, params_.failure, predicted);
+  if (failure.empty() && frames_without_points_ > params_.failure.max_blind_frames)
+    failure = "too few features are tracked";
+  if (!failure.empty()) return fail(failure, update);
+  update.keyframe = keyframe;
+  update.at_rest = window_.frames.back().at_rest;
+  update.status = EstimatorStatus::kTracking;
+  if (static_cast<int>(window_.frames.size()) > params_.keyframes) shrink(keyframe, update);
+  fillPose(update);
+}
+
+void Estimator::Impl::solve(WindowUpdate& update) {
+  triangulatePoints(window_, params_.landmarks, params_.factors.point_sigma_px);
+  triangulateLines(window_, params_);
+  WindowFactors factors(window_, params_.factors);
+  factors.addPriors();
+  factors.addCalibrationPriors(params_.calibration, rig_.T_b_c);
+  factors.addImu();
+  factors.addRest(params_.rest_velocity_sigma);
+  factors.addPoints();
+  factors.addLines();
+  update.iterations = solveWindow(window_, factors.factors(), params_.calibration, params_.max_iterations).iterations;
+  rejectOutliers(window_, params_.landmarks);
+  for (auto& [id, track] : window_.lines)
+    if (track.triangulated && !track.degenerate) updateLineUncertainty(window_, params_, track);
+  for (std::size_t i = 1; i < window_.frames.size(); ++i) {
+    WindowFrame& frame = window_.frames[i];
+    const ImuBias bias = biasOf(window_.frames[i - 1].motion.data());
+    if (frame.imu && ((bias.gyro - frame.imu->bias().gyro).norm() > 0.01 ||
+                      (bias.accel - frame.imu->bias().accel).norm() > 0.1))
+      frame.imu->repropagate(bias);
+  }
+  countLandmarks(update);
+}
+
+void Estimator::Impl::shrink(bool second_newest_is_keyframe, WindowUpdate& update) {
+  second_newest_is_keyframe ? dropOldest(update) : dropSecondNewest(update);
+}
+
+void Estimator::Impl::dropOldest(WindowUpdate& update) {
+  const FrameId leaving = window_.frames.front().id;
+  marginaliseOldest(window_, params_);
+  retireTracks(window_, leaving, true, update);
+  retireKeyframe(window_.frames.front(), update);
+  window_.removeFrame(leaving, true);
+}
+
+void Estimator::Impl::dropSecondNewest(WindowUpdate& update) {
+  const FrameId leaving = window_.frames[window_.frames.size() - 2].id;
+  marginaliseSecondNewest(window_);
+  retireTracks(window_, leaving, false, update);
+  window_.removeFrame(leaving, false);
+}
+
+void Estimator::Impl::fail(const std::string& reason, WindowUpdate& update) {
+  if (tracking_) {
+    // what was known before the frame that failed is kept
+    anchor_T_w_b_ = window_.frames[window_.frames.size() > 1 ? window_.frames.size() - 2 : 0].T_w_b();
+    if (window_.frames.size() > 1) {
+      const FrameId failed = window_.frames.back().id;
+      WindowUpdate nothing;
+      retireTracks(window_, failed, false, nothing);
+      window_.removeFrame(failed, false);
+    }
+    retireAll(window_, update);
+    update.status = EstimatorStatus::kLost;
+  }
+  update.reason = reason;
+  const SlidingWindow former = std::move(window_);
+  window_ = SlidingWindow(rig_);
+  window_.extrinsics = former.extrinsics;
+  window_.correction = former.correction;
+  if (!former.extrinsics.allFinite() || !former.correction.allFinite()) {
+    window_.extrinsics = toBlock(rig_.T_b_c);
+    window_.correction.setZero();
+  }
+  tracking_ = false;
+  pending_imu_.clear();
+}
+
+void Estimator::Impl::countLandmarks(WindowUpdate& update) const {
+  const FrameId newest = window_.frames.back().id;
+  for (const auto& [id, track] : window_.points) update.points_used += track.triangulated;
+  for (const auto& [id, track] : window_.lines) {
+    update.lines_tracked += !track.sightings.empty() && track.sightings.back().frame == newest;
+    update.lines_used += track.triangulated && !track.degenerate;
+    update.lines_degenerate += track.triangulated && track.degenerate;
+  }
+}
+
+void Estimator::Impl::fillPose(WindowUpdate& update) const {
+  const WindowFrame& newest = window_.frames.back();
+  update.T_w_b = newest.T_w_b();
+  update.v_w_b = velocityOf(newest.motion.data());
+  update.bias = biasOf(newest.motion.data());
+}
+
+WindowUpdate Estimator::Impl::finish() {
+  WindowUpdate update;
+  if (window_.frames.empty()) return update;
+  update.t_ns = window_.frames.back().t_ns;
+  if (tracking_) retireAll(window_, update);
+  window_ = SlidingWindow(rig_);
+  tracking_ = false;
+  pending_imu_.clear();
+  return update;
+}
+
+Estimator::Estimator(const Rig& rig, const EstimatorParams& params) : impl_(std::make_unique<Impl>(rig, params)) {}
+Estimator::~Estimator() = default;
+Estimator::Estimator(Estimator&&) noexcept = default;
+Estimator& Estimator::operator=(Estimator&&) noexcept = default;
+WindowUpdate Estimator::process(const FrameTracks& tracks, const ImuBatch& imu) { return impl_->process(tracks, imu); }
+WindowUpdate Estimator::finish() { return impl_->finish(); }
+CalibrationEstimate Estimator::calibration() const { return impl_->calibration(); }
+
+}  // namespace lintel

@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <string>
+
+#include "lintel/estimator/EstimatorParams.h"
+#include "lintel/estimator/SlidingWindow.h"
+
+namespace lintel {
+
+/// Turns a buffer of frames without states into a window. Moving start: gyro bias from epipolar geometry
+/// (GyroAlignment), velocity and gravity in closed form (GravityAlignment), full adjustment, and a check of what came
+/// out, its scale included. Static start: gravity from the accelerometer, bias from the gyroscope.
+class Initializer {
+ public:
+  Initializer(const EstimatorParams& params, const Pose& T_b_c_calibrated)
+      : params_(params), T_b_c_calibrated_(T_b_c_calibrated) {}
+
+  /// Tries on all frames of `window`. On success its states, points and priors are set (first frame at the origin,
+  /// yaw 0) and the result is empty; else the window is unchanged in frames and tracks, and the result says in words
+  /// what is waited for.
+  std::string initialise(SlidingWindow& window) const;
+
+  /// True when points and IMU say that nothing moves over the whole buffer.
+  bool atRest(const SlidingWindow& window) const;
+
+ private:
+  std::string startStatic(SlidingWindow& window) const;
+  std::string startMoving(SlidingWindow& window) const;
+  void adjust(SlidingWindow& window) const;
+  std::string verify(SlidingWindow& window) const;
+  double relativeScaleSigma(SlidingWindow& window) const;
+  void setBiasPrior(SlidingWindow& window, const MotionBlock& mean, double gyro_sigma, double velocity_sigma) const;
+  void levelAndCentre(SlidingWindow& window) const;
+
+  const EstimatorParams& params_;
+  Pose T_b_c_calibrated_;
+};
+
+/// Median motion of points between two frames of the window in pixels; `rotation_free` takes the gyro's rotation out.
+/// Negative when fewer than ten points are seen by both.
+double medianDisparityPx(const SlidingWindow& window, std::size_t frame_a, std::size_t frame_b, bool rotation_free);
+
+}  // namespace lintel

@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "OutlierRejection.h"
+
+#include "LineTriangulation.h"
+#include "PointTriangulation.h"
+
+namespace lintel {
+
+int rejectOutliers(SlidingWindow& window, const LandmarkParams& params) {
+  int rejected = 0;
+  for (auto& [id, track] : window.points) {
+    if (!track.triangulated) continue;
+    if (track.inverse_depth > 0 && reprojectionError(window, track) <= params.point_max_error_px) continue;
+    // the newest sighting may be right: the track starts anew from there
+    track.sightings.erase(track.sightings.begin(), track.sightings.end() - 1);
+    track.former.clear();
+    track.triangulated = false;
+    ++rejected;
+  }
+  for (auto& [id, track] : window.lines) {
+    if (!track.triangulated || track.sightings.empty()) continue;
+    if (lineError(window, track) <= params.line_max_error_px) continue;
+    track.sightings.erase(track.sightings.begin(), track.sightings.end() - 1);
+    track.former.clear();
+    track.triangulated = false;
+    ++rejected;
+  }
+  return rejected;
+}
+
+}  // namespace lintel

@@ -1,0 +1,115 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "WindowFactors.h"
+
+#include <limits>
+
+namespace lintel {
+
+std::shared_ptr<const StateManifold> manifoldOf(BlockKey::Kind kind) {
+  static const std::shared_ptr<const StateManifold> pose = std::make_shared<PoseManifold>();
+  static const std::shared_ptr<const StateManifold> line = std::make_shared<LineManifold>();
+  static const std::shared_ptr<const StateManifold> motion = std::make_shared<VectorManifold>(kMotionSize);
+  static const std::shared_ptr<const StateManifold> correction = std::make_shared<VectorManifold>(kCorrectionSize);
+  static const std::shared_ptr<const StateManifold> depth = std::make_shared<VectorManifold>(1);
+  switch (kind) {
+    case BlockKey::kPose:
+    case BlockKey::kExtrinsics: return pose;
+    case BlockKey::kMotion: return motion;
+    case BlockKey::kCorrection: return correction;
+    case BlockKey::kDepth: return depth;
+    case BlockKey::kLine: return line;
+  }
+  return nullptr;
+}
+
+WindowFactors::WindowFactors(const SlidingWindow& window, const FactorParams& params)
+    : window_(window), params_(params), point_loss_(params.point_loss_width), line_loss_(params.line_loss_width) {}
+
+void WindowFactors::add(std::unique_ptr<ceres::CostFunction> cost, std::vector<BlockKey> blocks) {
+  factors_.push_back({cost.get(), nullptr, std::move(blocks)});
+  others_.push_back(std::move(cost));
+}
+
+void WindowFactors::addPriors() {
+  for (const WindowPrior& prior : window_.priors) factors_.push_back({prior.factor.get(), nullptr, prior.blocks});
+}
+
+void WindowFactors::addCalibrationPriors(const CalibrationParams& p, const Pose& T_b_c_calibrated) {
+  Eigen::VectorXd sigma(kPoseTangent);
+  sigma << Eigen::Vector3d::Constant(p.extrinsic_translation_sigma_m),
+      Eigen::Vector3d::Constant(p.extrinsic_rotation_sigma_rad);
+  add(makeBlockPrior(manifoldOf(BlockKey::kExtrinsics), toBlock(T_b_c_calibrated), sigma), {{BlockKey::kExtrinsics, 0}});
+  Eigen::VectorXd correction_sigma(kCorrectionSize);
+  correction_sigma << p.focal_sigma_px, p.focal_sigma_px, p.centre_sigma_px, p.centre_sigma_px, p.distortion_sigma,
+      p.distortion_sigma, p.time_offset_sigma_s;
+  if (!p.refine_camera) correction_sigma.head<kTimeOffsetAt>().setConstant(1e-9);
+  if (!p.refine_time_offset) correction_sigma[kTimeOffsetAt] = 1e-9;
+  add(makeBlockPrior(manifoldOf(BlockKey::kCorrection), CorrectionBlock::Zero(), correction_sigma),
+      {{BlockKey::kCorrection, 0}});
+}
+
+void WindowFactors::addImu() {
+  for (std::size_t i = 1; i < window_.frames.size(); ++i) addImu(window_.frames[i - 1], window_.frames[i]);
+}
+
+void WindowFactors::addImuAfter(FrameId frame) {
+  for (std::size_t i = 1; i < window_.frames.size(); ++i)
+    if (window_.frames[i - 1].id == frame) addImu(window_.frames[i - 1], window_.frames[i]);
+}
+
+void WindowFactors::addImu(const WindowFrame& before, const WindowFrame& frame) {
+  if (!frame.imu || frame.imu->dt_s() <= 0) return;
+  add(std::make_unique<ImuFactor>(frame.imu), {{BlockKey::kPose, before.id},
+                                               {BlockKey::kMotion, before.id},
+                                               {BlockKey::kPose, frame.id},
+                                               {BlockKey::kMotion, frame.id}});
+}
+
+void WindowFactors::addRest(double velocity_sigma) {
+  for (const WindowFrame& frame : window_.frames) addRestOf(frame, velocity_sigma);
+}
+
+void WindowFactors::addRestOf(const WindowFrame& frame, double velocity_sigma) {
+  if (!frame.at_rest) return;
+  Eigen::VectorXd sigma = Eigen::VectorXd::Constant(kMotionSize, std::numeric_limits<double>::infinity());
+  sigma.segment<3>(kVelocityAt).setConstant(velocity_sigma);
+  add(makeBlockPrior(manifoldOf(BlockKey::kMotion), MotionBlock::Zero(), sigma), {{BlockKey::kMotion, frame.id}});
+}
+
+void WindowFactors::addPoints() {
+  for (const auto& [id, track] : window_.points)
+    if (track.triangulated) addPoint(track);
+}
+
+void WindowFactors::addPoint(const PointTrack& track) {
+  const double weight = window_.camera().meanFocal() / params_.point_sigma_px;
+  const PointSighting& host = track.sightings.front();
+  for (std::size_t i = 1; i < track.sightings.size(); ++i) {
+    point_factors_.emplace_back(host.observation, track.sightings[i].observation, weight);
+    factors_.push_back({&point_factors_.back(), &point_loss_,
+                        {{BlockKey::kPose, host.frame},
+                         {BlockKey::kPose, track.sightings[i].frame},
+                         {BlockKey::kExtrinsics, 0},
+                         {BlockKey::kCorrection, 0},
+                         {BlockKey::kDepth, track.id}}});
+  }
+}
+
+void WindowFactors::addLines() {
+  for (const auto& [id, track] : window_.lines)
+    if (track.triangulated && !track.degenerate) addLine(track);
+}
+
+void WindowFactors::addLine(const LineTrack& track) {
+  for (const LineSighting& s : track.sightings) {
+    const double weight = window_.camera().meanFocal() / (params_.line_sigma_px * s.sigma_px);
+    line_factors_.emplace_back(s.start, s.end, track.origin_w, weight);
+    factors_.push_back({&line_factors_.back(), &line_loss_,
+                        {{BlockKey::kPose, s.frame},
+                         {BlockKey::kExtrinsics, 0},
+                         {BlockKey::kCorrection, 0},
+                         {BlockKey::kLine, track.id}}});
+  }
+}
+
+}  // namespace lintel

@@ -1,0 +1,91 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "WindowRetirement.h"
+
+#include <cmath>
+
+#include "LineTriangulation.h"
+
+namespace lintel {
+
+namespace {
+
+template <class Sighting>
+std::vector<Sighting> allSightings(const std::vector<Sighting>& former, const std::vector<Sighting>& present) {
+  std::vector<Sighting> all = former;
+  all.insert(all.end(), present.begin(), present.end());
+  return all;
+}
+
+void retirePoint(const SlidingWindow& window, const PointTrack& track, WindowUpdate& update) {
+  if (!track.triangulated || track.sightings.empty() || track.inverse_depth <= 0) return;
+  const double lambda = track.inverse_depth;
+  update.points.push_back({track.id, window.positionOf(track), track.sigma_inverse_depth / (lambda * lambda),
+                           allSightings(track.former, track.sightings)});
+}
+
+void retireLine(const LineTrack& track, WindowUpdate& update) {
+  if (!track.triangulated) return;
+  update.lines.push_back({track.id, lineInWorld(track), track.sigma_direction_rad, track.sigma_distance_m,
+                          track.degenerate, allSightings(track.former, track.sightings)});
+}
+
+/// Whether a track is of no more use without frame `leaving`.
+template <class Track>
+bool isSpent(const Track& track, FrameId leaving, FrameId newest) {
+  if (track.sightings.empty()) return true;
+  if (track.sightings.back().frame == newest) return false;
+  std::size_t left = 0;
+  for (const auto& s : track.sightings) left += s.frame != leaving;
+  return left < 2;
+}
+
+/// Sightings of a frame that leaves without having been a keyframe are not handed over.
+template <class Track>
+void dropSighting(Track& track, FrameId frame) {
+  for (std::size_t i = 1; i < track.sightings.size(); ++i)  // a host must stay: the depth is relative to it
+    if (track.sightings[i].frame == frame) {
+      track.sightings.erase(track.sightings.begin() + static_cast<std::ptrdiff_t>(i));
+      return;
+    }
+}
+
+}  // namespace
+
+void retireTracks(SlidingWindow& window, FrameId leaving, bool keyframe, WindowUpdate& update) {
+  const FrameId newest = window.frames.back().id;
+  for (auto it = window.points.begin(); it != window.points.end();) {
+    if (!isSpent(it->second, leaving, newest)) {
+      ++it;
+      continue;
+    }
+    if (!keyframe) dropSighting(it->second, leaving);
+    retirePoint(window, it->second, update);
+    it = window.points.erase(it);
+  }
+  for (auto it = window.lines.begin(); it != window.lines.end();) {
+    if (!isSpent(it->second, leaving, newest)) {
+      ++it;
+      continue;
+    }
+    if (!keyframe) dropSighting(it->second, leaving);
+    retireLine(it->second, update);
+    it = window.lines.erase(it);
+  }
+}
+
+void retireKeyframe(const WindowFrame& frame, WindowUpdate& update) {
+  update.keyframes.push_back(
+      {frame.id, frame.t_ns, frame.T_w_b(), velocityOf(frame.motion.data()), biasOf(frame.motion.data()), frame.imu});
+}
+
+void retireAll(SlidingWindow& window, WindowUpdate& update) {
+  for (const auto& [id, track] : window.points) retirePoint(window, track, update);
+  for (const auto& [id, track] : window.lines) retireLine(track, update);
+  for (const WindowFrame& frame : window.frames) retireKeyframe(frame, update);
+  window.points.clear();
+  window.lines.clear();
+  window.frames.clear();
+  window.priors.clear();
+}
+
+}  // namespace lintel

@@ -1,0 +1,20 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "lintel/estimator/EstimatorParams.h"
+#include "lintel/estimator/SlidingWindow.h"
+#include "lintel/estimator/WindowUpdate.h"
+
+namespace lintel {
+
+/// Takes out the tracks that can add nothing any more once frame `leaving` is gone (not seen in the newest frame and
+/// fewer than two other sightings left) and hands those with an estimate to `update`.
+void retireTracks(SlidingWindow& window, FrameId leaving, bool keyframe, WindowUpdate& update);
+
+/// Hands over the frame as a keyframe.
+void retireKeyframe(const WindowFrame& frame, WindowUpdate& update);
+
+/// Hands over every frame and every track with an estimate, and empties the window.
+void retireAll(SlidingWindow& window, WindowUpdate& update);
+
+}  // namespace lintel

@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <ceres/sized_cost_function.h>
+
+#include <memory>
+
+#include "lintel/factors/StateBlocks.h"
+
+namespace lintel {
+
+/// Pre-integrated IMU between two states [Forster2017, eq. 45], 15 residuals in units of their standard deviation:
+///
+///   r_theta = Log(delta_R(b_i)^-1 R_i^-1 R_j)
+///   r_v     = R_i^-1 (v_j - v_i - g dt) - delta_v(b_i)
+///   r_p     = R_i^-1 (p_j - p_i - v_i dt - g dt^2 / 2) - delta_p(b_i)
+///   r_bg    = bias_gyro_j - bias_gyro_i,   r_ba = bias_accel_j - bias_accel_i     (random walks)
+///
+/// Blocks: pose_i, motion_i, pose_j, motion_j. The pre-integration must outlive the factor and not change meanwhile.
+class ImuFactor final : public ceres::SizedCostFunction<15, kPoseSize, kMotionSize, kPoseSize, kMotionSize> {
+ public:
+  explicit ImuFactor(std::shared_ptr<const Preintegration> preintegration);
+  bool Evaluate(double const* const* parameters, double* residuals, double** jacobians) const override;
+
+ private:
+  std::shared_ptr<const Preintegration> preintegration_;
+  Eigen::Matrix<double, 9, 9> sqrt_information_;
+  double gyro_walk_weight_ = 0, accel_walk_weight_ = 0;
+};
+
+}  // namespace lintel

@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <ceres/sized_cost_function.h>
+
+#include "lintel/factors/PointFactor.h"
+#include "lintel/factors/StateBlocks.h"
+
+namespace lintel {
+
+/// Distances of the two observed end points to the projected infinite line, on the normalised plane
+/// ([Lim2021] line residual, [Bartoli2005]):
+///
+///   (n, d) = line block, moment about the constant world point `origin_w`
+///   l = n_c = R_c_w (n + (origin_w - p_w_c) x d),    r_k = weight x_k^T l / sqrt(l_1^2 + l_2^2),  k = start, end
+///
+/// `weight` = focal / sigma_px. Blocks: pose (T_w_b), extrinsics (T_b_c), correction, line. A constant origin near the
+/// line keeps phi well conditioned far from the world's origin.
+class LineFactor final : public ceres::SizedCostFunction<2, kPoseSize, kPoseSize, kCorrectionSize, kLineSize> {
+ public:
+  LineFactor(const NormalisedObservation& start, const NormalisedObservation& end, const Eigen::Vector3d& origin_w,
+             double weight)
+      : start_(start), end_(end), origin_w_(origin_w), weight_(weight) {}
+  bool Evaluate(double const* const* parameters, double* residuals, double** jacobians) const override;
+
+ private:
+  NormalisedObservation start_, end_;
+  Eigen::Vector3d origin_w_;
+  double weight_;
+};
+
+}  // namespace lintel

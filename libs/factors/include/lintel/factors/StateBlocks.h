@@ -1,0 +1,67 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <Eigen/Core>
+
+#include "lintel/geometry/PluckerLine.h"
+#include "lintel/geometry/Pose.h"
+#include "lintel/inertial/Preintegration.h"
+
+namespace lintel {
+
+// Parameter blocks as Ceres sees them (arrays of double) and their tangent spaces:
+//
+//   pose       7 -> 6   p_a_b [m], then R_a_b as quaternion x y z w; p += dp, R <- R Exp(dtheta)
+//   motion     9        v_w_b [m/s], bias_gyro [rad/s], bias_accel [m/s^2]
+//   line       5 -> 4   orthonormal line (PluckerLine.h): U as quaternion x y z w, phi; U <- U Exp(dpsi), phi += dphi.
+//                       World axes; the moment is about a constant point near the line (LineFactor.h)
+//   depth      1        inverse depth of a point in its host camera [1/m]
+//   correction 7        what the calibrated camera is wrong by: fx fy cx cy [px], k1 k2, time offset [s]
+constexpr int kPoseSize = 7, kPoseTangent = 6;
+constexpr int kMotionSize = 9, kVelocityAt = 0, kBiasGyroAt = 3, kBiasAccelAt = 6;
+constexpr int kLineSize = 5, kLineTangent = 4;
+constexpr int kCorrectionSize = 7, kTimeOffsetAt = 6;
+
+using PoseBlock = Eigen::Matrix<double, kPoseSize, 1>;
+using MotionBlock = Eigen::Matrix<double, kMotionSize, 1>;
+using LineBlock = Eigen::Matrix<double, kLineSize, 1>;
+using CorrectionBlock = Eigen::Matrix<double, kCorrectionSize, 1>;
+
+/// d normalised observation / d correction: how one image observation moves with the camera correction.
+using ObservationJacobian = Eigen::Matrix<double, 2, kCorrectionSize>;
+
+inline PoseBlock toBlock(const Pose& pose) {
+  PoseBlock b;
+  b << pose.p, pose.q.coeffs();
+  return b;
+}
+inline Pose poseFromBlock(const double* b) {
+  return {Eigen::Quaterniond(Eigen::Map<const Eigen::Vector4d>(b + 3)), Eigen::Vector3d(b[0], b[1], b[2])};
+}
+inline LineBlock toBlock(const OrthonormalLine& line) {
+  LineBlock b;
+  b << line.U.coeffs(), line.phi;
+  return b;
+}
+inline OrthonormalLine lineFromBlock(const double* b) {
+  return {Eigen::Quaterniond(Eigen::Map<const Eigen::Vector4d>(b)), b[4]};
+}
+inline Eigen::Vector3d velocityOf(const double* motion) { return Eigen::Vector3d::Map(motion + kVelocityAt); }
+inline ImuBias biasOf(const double* motion) {
+  return {Eigen::Vector3d::Map(motion + kBiasGyroAt), Eigen::Vector3d::Map(motion + kBiasAccelAt)};
+}
+
+/// Maps a right perturbation to quaternion coefficients: dq (x y z w) = rotationPlus(q) * dtheta.
+inline Eigen::Matrix<double, 4, 3> rotationPlus(const Eigen::Quaterniond& q) {
+  Eigen::Matrix<double, 4, 3> M;
+  const double h = 0.5;
+  M << h * q.w(), -h * q.z(), h * q.y(), h * q.z(), h * q.w(), -h * q.x(), -h * q.y(), h * q.x(), h * q.w(),
+      -h * q.x(), -h * q.y(), -h * q.z();
+  return M;
+}
+
+/// The left inverse of rotationPlus: dtheta = rotationLift(q) * dq. Turns a Jacobian with respect to dtheta into one
+/// with respect to the four coefficients, as Ceres expects it.
+inline Eigen::Matrix<double, 3, 4> rotationLift(const Eigen::Quaterniond& q) { return 4.0 * rotationPlus(q).transpose(); }
+
+}  // namespace lintel

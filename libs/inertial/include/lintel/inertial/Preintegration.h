@@ -1,0 +1,74 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <Eigen/Core>
+#include <Eigen/Geometry>
+
+#include "lintel/sensing/Frame.h"
+#include "lintel/sensing/Rig.h"
+
+namespace lintel {
+
+/// IMU biases, assumed constant over one pre-integration.
+struct ImuBias {
+  Eigen::Vector3d gyro = Eigen::Vector3d::Zero();   ///< [rad/s]
+  Eigen::Vector3d accel = Eigen::Vector3d::Zero();  ///< [m/s^2]
+};
+
+/// Relative motion between two times from IMU samples alone, independent of the state at the start [Forster2017]:
+///   delta_R = R_bi_bj,  delta_v = R_bi_w (v_j - v_i - g dt),  delta_p = R_bi_w (p_j - p_i - v_i dt - g dt^2 / 2),
+/// by midpoint integration, with first-order bias Jacobians and the covariance of the error (theta, v, p).
+class Preintegration {
+ public:
+  using Matrix9 = Eigen::Matrix<double, 9, 9>;
+  using Matrix96 = Eigen::Matrix<double, 9, 6>;
+
+  /// Order of the error state of covariance and Jacobians.
+  enum Order { kTheta = 0, kVelocity = 3, kPosition = 6 };
+
+  Preintegration(const ImuBias& bias, const ImuNoise& noise) : bias_(bias), noise_(noise) {}
+
+  /// Appends samples; the first one must be the last of those before (or start the interval).
+  void append(const ImuBatch& samples);
+
+  /// Appends another interval that starts where this one ends (used when a frame between two is dropped).
+  void append(const Preintegration& next) { append(next.samples_); }
+
+  /// Integrates all samples again with other biases as the point of linearisation.
+  void repropagate(const ImuBias& bias);
+
+  double dt_s() const { return dt_s_; }
+  const ImuBias& bias() const { return bias_; }
+  const ImuNoise& noise() const { return noise_; }
+  const ImuBatch& samples() const { return samples_; }
+  const Eigen::Quaterniond& deltaR() const { return delta_R_; }
+  const Eigen::Vector3d& deltaV() const { return delta_v_; }
+  const Eigen::Vector3d& deltaP() const { return delta_p_; }
+
+  /// d (theta, v, p) / d (bias_gyro, bias_accel).
+  const Matrix96& biasJacobian() const { return bias_jacobian_; }
+  const Matrix9& covariance() const { return covariance_; }
+
+  /// Deltas corrected to first order for biases other than bias() [Forster2017, eq. 44].
+  struct Corrected {
+    Eigen::Quaterniond delta_R;
+    Eigen::Vector3d delta_v, delta_p;
+    Eigen::Vector3d delta_theta;  ///< the rotation correction J_gyro * (bias - bias())
+  };
+  Corrected corrected(const ImuBias& bias) const;
+
+ private:
+  void integrate(const ImuSample& s0, const ImuSample& s1);
+  void reset();
+
+  ImuBias bias_;
+  ImuNoise noise_;
+  ImuBatch samples_;
+  double dt_s_ = 0;
+  Eigen::Quaterniond delta_R_ = Eigen::Quaterniond::Identity();
+  Eigen::Vector3d delta_v_ = Eigen::Vector3d::Zero(), delta_p_ = Eigen::Vector3d::Zero();
+  Matrix96 bias_jacobian_ = Matrix96::Zero();
+  Matrix9 covariance_ = Matrix9::Zero();
+};
+
+}  // namespace lintel

@@ -1,0 +1,85 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "lintel/inertial/Preintegration.h"
+
+#include "lintel/geometry/Rotation.h"
+
+namespace lintel {
+
+void Preintegration::append(const ImuBatch& samples) {
+  for (const ImuSample& sample : samples) {
+    if (!samples_.empty()) {
+      if (sample.t_ns <= samples_.back().t_ns) continue;  // the shared end of two batches
+      integrate(samples_.back(), sample);
+    }
+    samples_.push_back(sample);
+  }
+}
+
+void Preintegration::reset() {
+  dt_s_ = 0;
+  delta_R_.setIdentity();
+  delta_v_.setZero();
+  delta_p_.setZero();
+  bias_jacobian_.setZero();
+  covariance_.setZero();
+}
+
+void Preintegration::repropagate(const ImuBias& bias) {
+  bias_ = bias;
+  reset();
+  for (std::size_t i = 1; i < samples_.size(); ++i) integrate(samples_[i - 1], samples_[i]);
+}
+
+void Preintegration::integrate(const ImuSample& s0, const ImuSample& s1) {
+  const double dt = 1e-9 * static_cast<double>(s1.t_ns - s0.t_ns), dt2 = dt * dt;
+  const Eigen::Vector3d omega = 0.5 * (s0.gyro + s1.gyro) - bias_.gyro, phi = omega * dt;
+  const Eigen::Quaterniond step = expRotation(phi);
+  const Eigen::Quaterniond R1 = (delta_R_ * step).normalized();
+  const Eigen::Vector3d a0 = s0.accel - bias_.accel, a1 = s1.accel - bias_.accel;
+  const Eigen::Vector3d a = 0.5 * (delta_R_ * a0 + R1 * a1);  // mean specific force in the frame of the start
+
+  // Linearised error propagation x <- A x + B noise, x = (theta, v, p), theta a right perturbation of delta_R.
+  const Eigen::Matrix3d R0m = delta_R_.toRotationMatrix(), R1m = R1.toRotationMatrix(), Rm = 0.5 * (R0m + R1m);
+  const Eigen::Matrix3d step_inverse = step.toRotationMatrix().transpose(), Jr_dt = rightJacobian(phi) * dt;
+  const Eigen::Matrix3d a1_skew = skew(a1);
+  const Eigen::Matrix3d da_dtheta = -0.5 * (R0m * skew(a0) + R1m * a1_skew * step_inverse);
+  const Eigen::Matrix3d da_dgyro = -0.5 * R1m * a1_skew * Jr_dt;  // through the rotation at the end of the step
+
+  Matrix9 A = Matrix9::Identity();
+  A.block<3, 3>(kTheta, kTheta) = step_inverse;
+  A.block<3, 3>(kVelocity, kTheta) = da_dtheta * dt;
+  A.block<3, 3>(kPosition, kTheta) = 0.5 * da_dtheta * dt2;
+  A.block<3, 3>(kPosition, kVelocity) = Eigen::Matrix3d::Identity() * dt;
+  Matrix96 B;  // d x / d (gyro, accel) measured
+  B.block<3, 3>(kTheta, 0) = Jr_dt;
+  B.block<3, 3>(kVelocity, 0) = da_dgyro * dt;
+  B.block<3, 3>(kPosition, 0) = 0.5 * da_dgyro * dt2;
+  B.block<3, 3>(kTheta, 3).setZero();
+  B.block<3, 3>(kVelocity, 3) = Rm * dt;
+  B.block<3, 3>(kPosition, 3) = 0.5 * Rm * dt2;
+
+  bias_jacobian_ = A * bias_jacobian_ - B;  // a bias is subtracted from the measurement
+  Eigen::Matrix<double, 6, 1> variance;
+  variance << Eigen::Vector3d::Constant(noise_.gyro_noise * noise_.gyro_noise / dt),
+      Eigen::Vector3d::Constant(noise_.accel_noise * noise_.accel_noise / dt);
+  covariance_ = A * covariance_ * A.transpose() + B * variance.asDiagonal() * B.transpose();
+
+  delta_p_ += delta_v_ * dt + 0.5 * a * dt2;
+  delta_v_ += a * dt;
+  delta_R_ = R1;
+  dt_s_ += dt;
+}
+
+Preintegration::Corrected Preintegration::corrected(const ImuBias& bias) const {
+  Eigen::Matrix<double, 6, 1> change;
+  change << bias.gyro - bias_.gyro, bias.accel - bias_.accel;
+  const Eigen::Matrix<double, 9, 1> correction = bias_jacobian_ * change;
+  Corrected c;
+  c.delta_theta = correction.segment<3>(kTheta);
+  c.delta_R = (delta_R_ * expRotation(c.delta_theta)).normalized();
+  c.delta_v = delta_v_ + correction.segment<3>(kVelocity);
+  c.delta_p = delta_p_ + correction.segment<3>(kPosition);
+  return c;
+}
+
+}  // namespace lintel

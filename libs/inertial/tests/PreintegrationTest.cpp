@@ -1,0 +1,141 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "lintel/inertial/Preintegration.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "lintel/geometry/Frames.h"
+#include "lintel/geometry/Rotation.h"
+
+namespace lintel {
+namespace {
+
+constexpr std::int64_t kStart_ns = 1400000000000000000, kStep_ns = 5000000;
+
+ImuBatch wavySamples(int count, const ImuBias& added = {}) {
+  ImuBatch samples;
+  for (int i = 0; i <= count; ++i) {
+    const double t = 0.005 * i;
+    samples.push_back({kStart_ns + i * kStep_ns,
+                       Eigen::Vector3d(0.5 * std::sin(3 * t), 0.3 * std::cos(2 * t), 0.7) + added.gyro,
+                       Eigen::Vector3d(2 * std::cos(t), -1 + t, 9.5 + std::sin(5 * t)) + added.accel});
+  }
+  return samples;
+}
+
+TEST(Preintegration, ConstantAccelerationWithoutRotationIsTheParabola) {
+  Preintegration p({}, {});
+  ImuBatch samples;
+  for (int i = 0; i <= 200; ++i) samples.push_back({kStart_ns + i * kStep_ns, {0, 0, 0}, {1, 2, 3}});
+  p.append(samples);
+  EXPECT_NEAR(p.dt_s(), 1.0, 1e-12);
+  EXPECT_TRUE(p.deltaV().isApprox(Eigen::Vector3d(1, 2, 3), 1e-12));
+  EXPECT_TRUE(p.deltaP().isApprox(Eigen::Vector3d(0.5, 1, 1.5), 1e-12));
+  EXPECT_NEAR(p.deltaR().angularDistance(Eigen::Quaterniond::Identity()), 0, 1e-12);
+}
+
+TEST(Preintegration, ConstantRateTurnsByRateTimesTime) {
+  Preintegration p({}, {});
+  ImuBatch samples;
+  for (int i = 0; i <= 100; ++i) samples.push_back({kStart_ns + i * kStep_ns, {0, 0, 0.8}, {0, 0, 0}});
+  p.append(samples);
+  EXPECT_TRUE(logRotation(p.deltaR()).isApprox(Eigen::Vector3d(0, 0, 0.4), 1e-12));
+}
+
+TEST(Preintegration, TwoPartsMakeTheWhole) {
+  const ImuBatch all = wavySamples(40);
+  Preintegration whole({}, {}), first({}, {}), second({}, {});
+  whole.append(all);
+  first.append(ImuBatch(all.begin(), all.begin() + 21));
+  second.append(ImuBatch(all.begin() + 20, all.end()));
+  first.append(second);
+  EXPECT_EQ(first.samples().size(), whole.samples().size());
+  EXPECT_EQ(first.deltaP(), whole.deltaP());
+  EXPECT_EQ(first.covariance(), whole.covariance());
+}
+
+TEST(Preintegration, BiasJacobianIsTheDerivativeOfTheDeltas) {
+  const ImuBatch samples = wavySamples(60);
+  const ImuBias base{{0.02, -0.01, 0.03}, {0.1, 0.2, -0.1}};
+  Preintegration p(base, {});
+  p.append(samples);
+  const double eps = 1e-6;
+  for (int k = 0; k < 6; ++k) {
+    ImuBias plus = base, minus = base;
+    (k < 3 ? plus.gyro[k] : plus.accel[k - 3]) += eps;
+    (k < 3 ? minus.gyro[k] : minus.accel[k - 3]) -= eps;
+    Preintegration a(plus, {}), b(minus, {});
+    a.append(samples);
+    b.append(samples);
+    Eigen::Matrix<double, 9, 1> numeric;
+    numeric << logRotation(p.deltaR().conjugate() * a.deltaR()) - logRotation(p.deltaR().conjugate() * b.deltaR()),
+        a.deltaV() - b.deltaV(), a.deltaP() - b.deltaP();
+    numeric /= 2 * eps;
+    EXPECT_LT((numeric - p.biasJacobian().col(k)).norm(), 1e-7) << "bias component " << k;
+  }
+}
+
+TEST(Preintegration, FirstOrderCorrectionAgreesWithRepropagation) {
+  Preintegration p({}, {});
+  p.append(wavySamples(20));
+  const ImuBias bias{{0.002, -0.001, 0.003}, {0.02, 0.01, -0.02}};
+  const auto corrected = p.corrected(bias);
+  p.repropagate(bias);
+  EXPECT_LT(corrected.delta_R.angularDistance(p.deltaR()), 1e-6);
+  EXPECT_LT((corrected.delta_v - p.deltaV()).norm(), 1e-5);
+  EXPECT_LT((corrected.delta_p - p.deltaP()).norm(), 1e-6);
+}
+
+TEST(Preintegration, CovarianceOfPureNoiseIsThatOfARandomWalk) {
+  ImuNoise noise;
+  Preintegration p({}, noise);
+  ImuBatch samples;
+  for (int i = 0; i <= 200; ++i) samples.push_back({kStart_ns + i * kStep_ns, {0, 0, 0}, {0, 0, 0}});
+  p.append(samples);
+  const double t = 1.0;
+  EXPECT_NEAR(p.covariance()(0, 0), noise.gyro_noise * noise.gyro_noise * t, 1e-12);
+  EXPECT_NEAR(p.covariance()(3, 3), noise.accel_noise * noise.accel_noise * t, 1e-10);
+  EXPECT_NEAR(p.covariance()(6, 6), noise.accel_noise * noise.accel_noise * t * t * t / 3, 1e-8);
+}
+
+TEST(Preintegration, CovariancePropagationMatchesNumericNoiseJacobians) {
+  // One disturbed sample pair at a time: the covariance must be the sum of the squared responses.
+  const ImuBatch samples = wavySamples(12);
+  ImuNoise noise;
+  Preintegration p({}, noise);
+  p.append(samples);
+  Preintegration::Matrix9 expected = Preintegration::Matrix9::Zero();
+  const double eps = 1e-6, dt = 0.005;
+  for (std::size_t i = 1; i < samples.size(); ++i)
+    for (int k = 0; k < 6; ++k) {
+      // noise of one integration step: the same error at both of its ends, and only there
+      Preintegration q({}, noise), rest({}, noise);
+      q.append(ImuBatch(samples.begin(), samples.begin() + static_cast<long>(i)));
+      ImuSample s0 = samples[i - 1], s1 = samples[i];
+      for (ImuSample* s : {&s0, &s1}) (k < 3 ? s->gyro[k] : s->accel[k - 3]) += eps;
+      rest.append({s0, s1});
+      Preintegration tail({}, noise);
+      tail.append(ImuBatch(samples.begin() + static_cast<long>(i), samples.end()));
+      const auto compose = [](const Preintegration& a, const Preintegration& b, Eigen::Quaterniond& R,
+                              Eigen::Vector3d& v, Eigen::Vector3d& x) {
+        x = x + v * b.dt_s() + R * b.deltaP();
+        v = v + R * b.deltaV();
+        R = R * b.deltaR();
+        (void)a;
+      };
+      Eigen::Quaterniond R = q.deltaR();
+      Eigen::Vector3d v = q.deltaV(), x = q.deltaP();
+      compose(q, rest, R, v, x);
+      compose(q, tail, R, v, x);
+      Eigen::Matrix<double, 9, 1> response;
+      response << logRotation(p.deltaR().conjugate() * R), v - p.deltaV(), x - p.deltaP();
+      response /= eps;
+      const double sigma = (k < 3 ? noise.gyro_noise : noise.accel_noise) / std::sqrt(dt);
+      expected += sigma * sigma * response * response.transpose();
+    }
+  EXPECT_LT((expected - p.covariance()).norm() / p.covariance().norm(), 1e-4);
+}
+
+}  // namespace
+}  // namespace lintel
