@@ -92,23 +92,34 @@ void addExtras(const Drawing& drawing, Json& json) {
   }
 }
 
-void makeUnlit(Json& json) {
-  if (!json.contains("materials")) return;
-  bool any = false;
+/// Materials anew: assimp adds an extension that it does not declare. Strokes have no normals, so they are unlit.
+void writeMaterials(Json& json) {
+  bool any_unlit = false;
   for (Json& material : json["materials"]) {
-    if (material.value("name", "").rfind("Strokes", 0) != 0) continue;
+    const std::string name = material.value("name", "");
+    material = {{"name", name}, {"pbrMetallicRoughness", {{"metallicFactor", 0}, {"roughnessFactor", 0.9}}}};
+    if (name.rfind("Strokes", 0) != 0) continue;
     material["extensions"]["KHR_materials_unlit"] = Json::object();
-    material.erase("emissiveFactor");
-    any = true;
+    any_unlit = true;
   }
-  if (any) json["extensionsUsed"] = {"KHR_materials_unlit"};
+  json.erase("extensionsUsed");
+  if (any_unlit) json["extensionsUsed"] = Json::array({"KHR_materials_unlit"});
+}
+
+/// glTF knows no empty lists: an empty map is a scene of nodes only.
+void removeEmptyLists(Json& json) {
+  for (const char* list : {"buffers", "bufferViews", "accessors", "meshes"}) {
+    if (json.contains(list) && json[list].empty()) json.erase(list);
+  }
+  if (!json.contains("meshes")) json.erase("materials"), json.erase("buffers"), json.erase("extensionsUsed");
 }
 
 Glb makeGlb(const Drawing& drawing, const std::string& path) {
   const auto scene = makeAssimpScene(drawing, true);
   Glb glb = splitGlb(exportByAssimp(*scene, "glb2", path));
   addExtras(drawing, glb.json);
-  makeUnlit(glb.json);
+  writeMaterials(glb.json);
+  removeEmptyLists(glb.json);
   return glb;
 }
 
