@@ -77,6 +77,7 @@ std::size_t Conversion::countImages(const std::string& label) const {
 
 void Conversion::addCamera(const std::string& label) {
   const std::string folder = mav0_ + "/" + label;
+  if (summary_.images.count(label) > 0) throw RecordingError(label + " is named twice: name each camera once");
   if (!fs::is_directory(folder)) throw RecordingError(folder + ": no such camera: name others with --cameras");
   const EurocCamera camera = loadEurocCamera(folder + "/sensor.yaml");
   note_.camera_rates_hz[label] = camera.rate_hz;

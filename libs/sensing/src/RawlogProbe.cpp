@@ -52,11 +52,21 @@ struct Beginning {
 
 bool wanted(const std::string& label, const std::string& chosen) { return chosen.empty() || label == chosen; }
 
+/// The next observation; null also at a damaged place once there is enough: what is before it can still be read.
+mrpt::obs::CObservation::Ptr nextOf(RawlogFile& file, bool enough) {
+  try {
+    return file.next();
+  } catch (const RecordingError&) {
+    if (!enough) throw;
+    return nullptr;
+  }
+}
+
 Beginning readBeginning(const std::string& path, const RecordingParams& params) {
   Beginning seen;
   RawlogFile file(path);
   std::optional<std::int64_t> until_ns;
-  while (const auto observation = file.next()) {
+  while (const auto observation = nextOf(file, until_ns.has_value())) {
     if (const auto comment = std::dynamic_pointer_cast<mrpt::obs::CObservationComment>(observation)) {
       if (!seen.note) seen.note = parseNote(comment->text, file.where());
     } else if (const auto image = std::dynamic_pointer_cast<CObservationImage>(observation)) {
@@ -95,8 +105,7 @@ PinholeRadtan cameraOf(const CObservationImage& observation, const std::string& 
   camera.cx = params.cx();
   camera.cy = params.cy();
   if (params.distortion == mrpt::img::DistortionModel::kannala_brandt)
-    throw RecordingError(where +
-                         ": fish-eye lenses are not supported: undistort the images with rawlog-edit --undistort");
+    throw RecordingError(where + ": fish-eye lenses are not supported: calibrate with the plumb_bob model");
   if (params.distortion == mrpt::img::DistortionModel::plumb_bob) {
     if (params.k3() != 0 || params.k4() != 0 || params.k5() != 0 || params.k6() != 0)
       throw RecordingError(where + ": distortion terms k3 to k6 are not supported: calibrate with k1 k2 p1 p2 only");

@@ -1,0 +1,164 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <gmock/gmock.h>
+
+#include "TimeTicks.h"
+#include "TinyEuroc.h"
+
+namespace lintel::test {
+namespace {
+
+using testing::HasSubstr;
+using testing::IsEmpty;
+
+class EurocRecordingTest : public testing::Test {
+ protected:
+  EurocRecordingTest() { TinyEuroc().write(root_); }
+  std::string stampName(int frame) const { return std::to_string(TinyEuroc::frameStamp(frame)) + ".png"; }
+  std::string imagePath(int frame) const { return camera_ + "/data/" + stampName(frame); }
+
+  TempFolder folder_;
+  std::string root_ = folder_ / "flight", camera_ = root_ + "/mav0/cam0", imu_ = root_ + "/mav0/imu0";
+};
+
+TEST_F(EurocRecordingTest, GivesEveryFrameWithItsImage) {
+  const Everything all = readAll(root_);
+  EXPECT_EQ(all.error, "");
+  EXPECT_THAT(all.warnings, IsEmpty());
+  ASSERT_EQ(all.steps.size(), 20u);
+  for (int i = 0; i < 20; ++i) {
+    const Frame& frame = all.steps[i].frame;
+    EXPECT_EQ(frame.t_ns, TinyEuroc::frameStamp(i) / 100 * 100);
+    EXPECT_EQ(frame.image->width, 32);
+    EXPECT_EQ(frame.image->height, 24);
+    EXPECT_EQ(frame.image->pixels[1], (7 + i * 31) & 255);
+    EXPECT_EQ(frame.image->pixels[32], (13 + i * 31) & 255);
+  }
+}
+
+TEST_F(EurocRecordingTest, ReadsTheCalibration) {
+  const Rig rig = openRecording(root_)->rig();
+  EXPECT_EQ(rig.camera.width, 32);
+  EXPECT_EQ(rig.camera.fy, 30.296);
+  EXPECT_EQ(rig.camera.k2, 0.07395907);
+  EXPECT_EQ(rig.camera.p2, 1.76187114e-05);
+  EXPECT_EQ(rig.T_b_c.p.y(), -0.064676986768);
+  EXPECT_NEAR(rig.T_b_c.R()(0, 1), -0.999880929698, 1e-10);
+  EXPECT_NEAR(rig.T_b_c.R()(2, 0), -0.0257744366974, 1e-10);
+  EXPECT_EQ(rig.imu_noise.gyro_walk, 2.1e-05);
+  EXPECT_EQ(rig.imu_noise.accel_noise, 2.3e-3);
+  EXPECT_EQ(rig.imu_rate_hz, 200);
+  EXPECT_EQ(rig.camera_rate_hz, 20);
+}
+
+TEST_F(EurocRecordingTest, AnImuThatIsNotTheBodyMovesTheCamera) {
+  replaceInFile(imu_ + "/sensor.yaml", "data: [1.0, 0.0, 0.0, 0.0,", "data: [1.0, 0.0, 0.0, 0.25,");
+  EXPECT_DOUBLE_EQ(openRecording(root_)->rig().T_b_c.p.x(), -0.0216401454975 - 0.25);
+}
+
+TEST_F(EurocRecordingTest, ImuBatchesJoinAtTheFrames) {
+  const Everything all = readAll(root_);
+  for (std::size_t i = 1; i < all.steps.size(); ++i) {
+    const ImuBatch &before = all.steps[i - 1].imu, &imu = all.steps[i].imu;
+    ASSERT_EQ(imu.size(), 12u);  // 10 samples between the frames and both ends
+    EXPECT_EQ(imu.front().t_ns, all.steps[i - 1].frame.t_ns);
+    EXPECT_EQ(imu.back().t_ns, all.steps[i].frame.t_ns);
+    EXPECT_EQ(imu.front().gyro, before.back().gyro);
+    EXPECT_EQ(imu.front().accel, before.back().accel);
+    for (std::size_t k = 1; k < imu.size(); ++k) EXPECT_LT(imu[k - 1].t_ns, imu[k].t_ns);
+    for (const ImuSample& sample : imu) {
+      EXPECT_EQ(sample.t_ns % kTick_ns, 0);
+      // The signals are linear, so that interpolation is exact but for the stamps cut by up to 100 ns.
+      EXPECT_TRUE(sample.gyro.isApprox(TinyEuroc::gyroAt(sample.t_ns), 1e-6));
+      EXPECT_TRUE(sample.accel.isApprox(TinyEuroc::accelAt(sample.t_ns), 1e-6));
+    }
+  }
+}
+
+TEST_F(EurocRecordingTest, TheFirstBatchHoldsHalfASecond) {
+  const ImuBatch imu = readAll(root_).steps.front().imu;
+  EXPECT_EQ(imu.back().t_ns, TinyEuroc::kFirst_ns / 100 * 100);
+  EXPECT_GE(imu.front().t_ns, imu.back().t_ns - 500000000);
+  EXPECT_LT(imu.front().t_ns, imu.back().t_ns - 494000000);
+}
+
+TEST_F(EurocRecordingTest, Mav0ItselfIsTheSame) {
+  expectSameSteps(readAll(root_).steps, readAll(root_ + "/mav0").steps);
+}
+
+TEST_F(EurocRecordingTest, DecodingAheadChangesNothing) {
+  std::filesystem::remove(imagePath(7));
+  RecordingParams asked;
+  asked.frames_ahead = 0;
+  const Everything plain = readAll(root_, asked);
+  for (const std::size_t ahead : {1u, 8u, 100u}) {
+    asked.frames_ahead = ahead;
+    const Everything other = readAll(root_, asked);
+    expectSameSteps(plain.steps, other.steps);
+    EXPECT_EQ(plain.warnings, other.warnings);
+  }
+}
+
+TEST_F(EurocRecordingTest, DecodesNoFurtherThanAsked) {
+  RecordingParams params;
+  params.frames_ahead = 3;
+  const auto recording = openRecording(root_, params);
+  ASSERT_TRUE(recording->next());
+  // At most: 1 delivered + 3 waiting + 1 in work.
+  for (int i = 5; i < 20; ++i) std::filesystem::remove(imagePath(i));
+  EXPECT_EQ(readAll(*recording).steps.size(), 4u);
+}
+
+TEST_F(EurocRecordingTest, CanBeLeftInTheMiddle) {
+  for (int taken = 0; taken < 3; ++taken) {
+    const auto recording = openRecording(root_);
+    for (int i = 0; i < taken; ++i) ASSERT_TRUE(recording->next());
+  }
+}
+
+TEST_F(EurocRecordingTest, StaysAtItsEnd) {
+  const auto recording = openRecording(root_);
+  readAll(*recording);
+  EXPECT_FALSE(recording->next());
+  EXPECT_FALSE(recording->next());
+}
+
+TEST_F(EurocRecordingTest, FromAndToCutOutARange) {
+  RecordingParams params;
+  params.from_s = 0.3;
+  params.to_s = 0.6;
+  const auto recording = openRecording(root_, params);
+  EXPECT_EQ(recording->expectedFrames(), 7u);
+  const Everything part = readAll(*recording);
+  std::vector<FrameWithImu> whole = readAll(root_).steps;
+  ASSERT_EQ(part.steps.size(), 7u);
+  const ImuBatch& lead = part.steps.front().imu;
+  EXPECT_EQ(lead.back().t_ns, part.steps.front().frame.t_ns);
+  EXPECT_NEAR(static_cast<double>(lead.back().t_ns - lead.front().t_ns), 5e8, 6e6);
+  whole[6].imu = lead;  // otherwise the range is as in the whole
+  expectSameSteps(part.steps, {whole.begin() + 6, whole.begin() + 13});
+}
+
+TEST_F(EurocRecordingTest, ARangeBehindTheEndIsAnError) {
+  RecordingParams params;
+  params.from_s = 100;
+  EXPECT_THAT(readAll(root_, params).error, HasSubstr("no image between 100"));
+  params.from_s = -1;
+  EXPECT_THAT(openingError(root_, params), HasSubstr("from must be"));
+  params.from_s = 2;
+  params.to_s = 1;
+  EXPECT_THAT(openingError(root_, params), HasSubstr("to must not be before from"));
+}
+
+TEST_F(EurocRecordingTest, NamedCameraIsRead) {
+  TinyEuroc two;
+  two.cameras = {"cam0", "cam1"};
+  two.write(root_);
+  RecordingParams params;
+  params.camera = "cam1";
+  const Everything other = readAll(root_, params);
+  EXPECT_EQ(other.steps[0].frame.image->pixels[0], 97);
+  EXPECT_EQ(readAll(root_).steps[0].frame.image->pixels[0], 0);
+}
+
+}  // namespace
+}  // namespace lintel::test

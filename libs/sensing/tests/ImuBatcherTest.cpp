@@ -1,0 +1,96 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "ImuBatcher.h"
+
+#include <gmock/gmock.h>
+
+#include <vector>
+
+namespace lintel {
+namespace {
+
+constexpr std::int64_t kMs = 1000000;
+
+/// Samples at the given milliseconds; gyro.x is the time in milliseconds.
+ImuBatcher batcherOf(std::vector<int> times_ms) {
+  return ImuBatcher([times_ms, i = std::size_t{0}](std::int64_t) mutable -> std::optional<ImuSample> {
+    if (i == times_ms.size()) return std::nullopt;
+    const int t = times_ms[i++];
+    return ImuSample{t * kMs, {double(t), 0, 0}, {0, 0, 2.0 * t}};
+  });
+}
+
+std::vector<double> timesOf(const ImuBatch& batch) {
+  std::vector<double> times;
+  for (const ImuSample& sample : batch) {
+    EXPECT_DOUBLE_EQ(sample.gyro.x(), static_cast<double>(sample.t_ns) / kMs);
+    EXPECT_DOUBLE_EQ(sample.accel.z(), static_cast<double>(sample.t_ns) / kMs * 2);
+    times.push_back(static_cast<double>(sample.t_ns) / kMs);
+  }
+  return times;
+}
+
+using testing::ElementsAre;
+using testing::IsEmpty;
+
+TEST(ImuBatcherTest, TakesSamplesThatFallOnTheFramesAsTheyAre) {
+  ImuBatcher imu = batcherOf({0, 10, 20, 30, 40, 50});
+  EXPECT_THAT(timesOf(imu.before(10 * kMs)), ElementsAre(0, 10));
+  EXPECT_THAT(timesOf(imu.between(10 * kMs, 30 * kMs)), ElementsAre(10, 20, 30));
+  EXPECT_THAT(timesOf(imu.between(30 * kMs, 50 * kMs)), ElementsAre(30, 40, 50));
+}
+
+TEST(ImuBatcherTest, InterpolatesBothEnds) {
+  ImuBatcher imu = batcherOf({0, 10, 20, 30, 40});
+  EXPECT_THAT(timesOf(imu.before(5 * kMs)), ElementsAre(0, 5));
+  EXPECT_THAT(timesOf(imu.between(5 * kMs, 28 * kMs)), ElementsAre(5, 10, 20, 28));
+}
+
+TEST(ImuBatcherTest, FramesCloserThanSamples) {
+  ImuBatcher imu = batcherOf({0, 10, 20});
+  imu.before(2 * kMs);
+  EXPECT_THAT(timesOf(imu.between(2 * kMs, 4 * kMs)), ElementsAre(2, 4));
+  EXPECT_THAT(timesOf(imu.between(4 * kMs, 12 * kMs)), ElementsAre(4, 10, 12));
+}
+
+TEST(ImuBatcherTest, NothingOutsideTheRecordedTime) {
+  ImuBatcher imu = batcherOf({10, 20, 30});
+  EXPECT_THAT(imu.before(5 * kMs), IsEmpty());
+  EXPECT_THAT(imu.between(5 * kMs, 15 * kMs), IsEmpty());
+  EXPECT_THAT(timesOf(imu.between(15 * kMs, 25 * kMs)), ElementsAre(15, 20, 25));
+  EXPECT_THAT(imu.between(25 * kMs, 35 * kMs), IsEmpty());
+}
+
+TEST(ImuBatcherTest, FirstSampleExactlyOnTheFrame) {
+  ImuBatcher imu = batcherOf({10, 20});
+  EXPECT_THAT(timesOf(imu.before(10 * kMs)), ElementsAre(10));
+}
+
+TEST(ImuBatcherTest, LeadInIsHalfASecondAndEndsAtAGap) {
+  ImuBatcher all = batcherOf({0, 40, 80, 120, 160, 200, 240, 280, 320, 360, 400, 440, 480, 520, 560});
+  EXPECT_THAT(timesOf(all.before(540 * kMs)),
+              ElementsAre(40, 80, 120, 160, 200, 240, 280, 320, 360, 400, 440, 480, 520, 540));
+  ImuBatcher gap = batcherOf({0, 10, 100, 110, 120});
+  EXPECT_THAT(timesOf(gap.before(115 * kMs)), ElementsAre(100, 110, 115));
+}
+
+TEST(ImuBatcherTest, NothingIsInterpolatedOverADropOut) {
+  ImuBatcher imu = batcherOf({0, 10, 20, 71, 80, 90, 140});
+  imu.before(5 * kMs);
+  EXPECT_THAT(imu.between(5 * kMs, 75 * kMs), IsEmpty());  // 20 to 71 inside
+  EXPECT_THAT(timesOf(imu.between(75 * kMs, 85 * kMs)), ElementsAre(75, 80, 85));
+  EXPECT_THAT(timesOf(imu.between(85 * kMs, 100 * kMs)), ElementsAre(85, 90, 100));  // 50 ms are still no drop-out
+}
+
+TEST(ImuBatcherTest, SkippingKeepsTheLeadIn) {
+  std::vector<int> times;
+  for (int t = 0; t <= 3000; t += 10) times.push_back(t);
+  ImuBatcher imu = batcherOf(times);
+  imu.skipTo(1000 * kMs);
+  imu.skipTo(2000 * kMs);
+  const ImuBatch batch = imu.before(2005 * kMs);
+  EXPECT_EQ(batch.front().t_ns, 1510 * kMs);
+  EXPECT_EQ(batch.back().t_ns, 2005 * kMs);
+}
+
+}  // namespace
+}  // namespace lintel
