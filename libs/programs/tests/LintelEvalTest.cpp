@@ -47,19 +47,19 @@ class LintelEvalProgram : public ::testing::Test {
   void writeRecordingAndMap() {
     std::string states = "#timestamp\n";
     LineMap map;
-    const Pose T_map_w{expRotation({0, 0, 1.5707963267948966}), {5, 6, 7}};
+    const Pose T_e_w{expRotation({0, 0, 1.5707963267948966}), {5, 6, 7}};
     for (int i = 0; i <= 4; ++i) {
       const Pose T_w_b{Eigen::Quaterniond::Identity(), {1.0 * i, 0.5 * i * i, 0}};
       states += std::to_string(i) + "000000000," + std::to_string(T_w_b.p.x()) + "," + std::to_string(T_w_b.p.y()) +
                 ",0,1,0,0,0\n";
-      map.trajectory.emplace_back(i * std::int64_t{1000000000}, T_map_w * T_w_b);
+      map.trajectory.emplace_back(i * std::int64_t{1000000000}, T_e_w * T_w_b);
     }
     write("mav0/state_groundtruth_estimate0/data.csv", states);
     write("mav0/lines0/data.csv", "#x0 [m],y0,z0,x1,y1,z1,frames_seen\n0,0,1,2,0,1,100\n0,5,0,0,5,2,100\n");
     for (const Segment3& segment : {Segment3{{0, 0, 1}, {2, 0, 1}}, Segment3{{0, 5.03, 0}, {0, 5.03, 2}}}) {
       MapLine line;
       line.id = map.lines.size();
-      line.segment_w = {T_map_w * segment.start, T_map_w * segment.end};
+      line.segment_w = {T_e_w * segment.start, T_e_w * segment.end};
       map.lines.push_back(line);
     }
     writeMap(map, path("map.lintel"));

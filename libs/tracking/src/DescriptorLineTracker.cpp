@@ -30,7 +30,7 @@ std::vector<ImageLine> DescriptorLineTracker::detect(const ImagePyramid& pyramid
 void DescriptorLineTracker::process(const ImagePyramid& pyramid, const GyroPrediction& gyro,
                                     const std::vector<PointFlow>&, FrontEndStatistics& statistics) {
   observations_.clear();
-  R_now_last_ = (gyro.R_c1_c0() * R_now_last_).normalized();
+  R_c_cd_ = (gyro.R_c1_c0() * R_c_cd_).normalized();
   const bool skip = frames_since_detection_ != 0;
   frames_since_detection_ = (frames_since_detection_ + 1) % params_.detect_every_n;
   if (skip) return;
@@ -40,7 +40,7 @@ void DescriptorLineTracker::process(const ImagePyramid& pyramid, const GyroPredi
   const cv::Mat descriptors = matcher_.describe(pyramid.image(), detected);
   std::vector<ImageLine> expected;
   const auto turned = [&](const Eigen::Vector2d& u) -> Eigen::Vector2d {
-    const Eigen::Vector3d ray = R_now_last_ * (u / camera_.focal()).homogeneous();
+    const Eigen::Vector3d ray = R_c_cd_ * (u / camera_.focal()).homogeneous();
     return camera_.focal() * ray.head<2>() / std::max(ray.z(), 0.1);
   };
   for (const Track& track : tracks_) expected.push_back({turned(track.line.start), turned(track.line.end)});
@@ -73,7 +73,7 @@ void DescriptorLineTracker::process(const ImagePyramid& pyramid, const GyroPredi
             [](const LineObservation& a, const LineObservation& b) { return a.id < b.id; });
   tracks_ = std::move(tracks);
   descriptors_ = descriptors;
-  R_now_last_.setIdentity();
+  R_c_cd_.setIdentity();
 }
 
 }  // namespace lintel

@@ -8,6 +8,16 @@
 //   c  camera: x right, y down, z forward
 //   l  line: the reference point a line's moment is taken about (PluckerLine.h)
 //
+// and where one place needs more:
+//
+//   a  any frame, in statements about transforms in general; the earlier of two bodies
+//   e  the frame that an estimate is given in
+//   n  body that flies ahead: x forward, y left, z up
+//   s  a sensor
+//   v  the vehicle that a recording's calibration is given in (EuRoC's B)
+//
+// Several of a kind carry an index of one character: b0, bi, c1.
+//
 // `T_a_b` maps coordinates in b to coordinates in a: p_a = T_a_b * p_b; neighbouring letters cancel,
 // T_a_c = T_a_b * T_b_c. `R_a_b` is its rotation, `p_a_b` the origin of b in a. `v_w_b`: velocity of b seen in w.
 
