@@ -25,7 +25,7 @@ std::string environment(const char* name) {
   return value;
 }
 
-std::string quoted(const fs::path& path) { return "'" + path.string() + "'"; }
+std::string shellWord(const fs::path& path) { return "'" + path.string() + "'"; }
 
 std::string bytesOf(const fs::path& path) {
   std::ifstream file(path, std::ios::binary);
@@ -39,7 +39,7 @@ class Pipeline : public ::testing::Test {
     folder_ = environment("LINTEL_E2E_FOLDER");
     fs::remove_all(folder_);
     fs::create_directories(folder_);
-    sim_exit_ = run("lintel-sim", "--scene room --duration 12 --seed 3 -o " + quoted(recording()));
+    sim_exit_ = run("lintel-sim", "--scene room --duration 12 --seed 3 -o " + shellWord(recording()));
     if (sim_exit_ == 0) vio_exit_ = runVio(recording(), "out");
   }
 
@@ -50,14 +50,15 @@ class Pipeline : public ::testing::Test {
 
   /// Runs a program; its output goes to PROGRAM.out and PROGRAM.err in the work folder.
   static int run(const std::string& program, const std::string& arguments) {
-    const std::string command = quoted(fs::path(environment("LINTEL_PROGRAMS")) / program) + " " + arguments + " > " +
-                                quoted(folder_ / (program + ".out")) + " 2> " + quoted(folder_ / (program + ".err"));
+    const std::string command = shellWord(fs::path(environment("LINTEL_PROGRAMS")) / program) + " " + arguments +
+                                " > " + shellWord(folder_ / (program + ".out")) + " 2> " +
+                                shellWord(folder_ / (program + ".err"));
     const int status = std::system(command.c_str());
     return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
   }
   static int runVio(const fs::path& recording, const std::string& out, const std::string& options = "") {
-    return run("lintel-vio", quoted(recording) + " -o " + quoted(folder_ / out) + " -c " +
-                                 quoted(environment("LINTEL_CONFIG")) + " " + options);
+    return run("lintel-vio", shellWord(recording) + " -o " + shellWord(folder_ / out) + " -c " +
+                                 shellWord(environment("LINTEL_CONFIG")) + " " + options);
   }
   static fs::path recording() { return folder_ / "recording"; }
   static fs::path truth(const std::string& sensor) { return recording() / "mav0" / sensor / "data.csv"; }
@@ -65,10 +66,10 @@ class Pipeline : public ::testing::Test {
   /// Figures of lintel-eval for a run's trajectory and map.
   static nlohmann::json evaluate(const std::string& out) {
     const fs::path json = folder_ / (out + ".json");
-    EXPECT_EQ(run("lintel-eval", "--trajectory " + quoted(folder_ / out / "trajectory.tum") + " --groundtruth " +
-                                     quoted(truth("state_groundtruth_estimate0")) + " --map " +
-                                     quoted(folder_ / out / "map.lintel") + " --lines " + quoted(truth("lines0")) +
-                                     " --json " + quoted(json)),
+    EXPECT_EQ(run("lintel-eval", "--trajectory " + shellWord(folder_ / out / "trajectory.tum") + " --groundtruth " +
+                                     shellWord(truth("state_groundtruth_estimate0")) + " --map " +
+                                     shellWord(folder_ / out / "map.lintel") + " --lines " +
+                                     shellWord(truth("lines0")) + " --json " + shellWord(json)),
               0)
         << bytesOf(folder_ / "lintel-eval.err");
     return nlohmann::json::parse(bytesOf(json));
@@ -102,14 +103,15 @@ TEST_F(Pipeline, MapsLinesWhereEdgesAre) {
 TEST_F(Pipeline, ExportsEveryForm) {
   for (const std::string form : {"glb", "obj", "ply", "3Dscene", "csv", "png"}) {
     const fs::path file = folder_ / ("map." + form);
-    EXPECT_EQ(run("lintel-map", quoted(folder_ / "out/map.lintel") + " -o " + quoted(file)), 0)
+    EXPECT_EQ(run("lintel-map", shellWord(folder_ / "out/map.lintel") + " -o " + shellWord(file)), 0)
         << bytesOf(folder_ / "lintel-map.err");
     EXPECT_TRUE(fs::exists(file) && fs::file_size(file) > 0) << file;
   }
 }
 
 TEST_F(Pipeline, RawlogGivesTheSameBytes) {
-  ASSERT_EQ(run("euroc2rawlog", "-w -i " + quoted(recording()) + " -o " + quoted(folder_ / "recording.rawlog")), 0)
+  ASSERT_EQ(run("euroc2rawlog", "-w -i " + shellWord(recording()) + " -o " + shellWord(folder_ / "recording.rawlog")),
+            0)
       << bytesOf(folder_ / "euroc2rawlog.err");
   ASSERT_EQ(runVio(folder_ / "recording.rawlog", "out_rawlog"), 0) << bytesOf(folder_ / "lintel-vio.err");
   EXPECT_TRUE(bytesOf(folder_ / "out/trajectory.tum") == bytesOf(folder_ / "out_rawlog/trajectory.tum"));
