@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "lintel/geometry/PinholeRadtan.h"
+#include "lintel/geometry/Pose.h"
+#include "lintel/simulation/Scene.h"
+
+namespace lintel {
+
+/// Light that fell on the sensor: row-major, width * height, linear; 1 is about a well-lit white wall.
+using Radiance = std::vector<float>;
+
+/// Ray-casts a scene through a camera: one ray a pixel with filtered textures, sixteen where surfaces meet.
+/// Deterministic; may be used from several threads at once.
+class ImageRenderer {
+ public:
+  ImageRenderer(const Scene& scene, const PinholeRadtan& camera);
+  ~ImageRenderer();
+
+  Radiance render(const Pose& T_w_c) const;
+
+  /// Per line of the scene: whether at least two of five points along it are in the image and not hidden.
+  std::vector<bool> visibleLines(const Pose& T_w_c) const;
+
+ private:
+  class Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace lintel
