@@ -1,0 +1,198 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "lintel/programs/LintelVio.h"
+
+#include <CLI/App.hpp>
+#include <CLI/Config.hpp>
+#include <CLI/Formatter.hpp>
+#include <algorithm>
+#include <chrono>
+#include <cstdio>
+#include <filesystem>
+#include <iomanip>
+#include <ostream>
+#include <stdexcept>
+
+#include "Configuration.h"
+#include "Odometry.h"
+#include "ProgramMain.h"
+#include "Progress.h"
+#include "VioOutput.h"
+#include "lintel/exporting/MapExport.h"
+#include "lintel/mapping/AtomicFile.h"
+#include "lintel/mapping/MapFile.h"
+#include "lintel/tracking/TrackDrawing.h"
+
+namespace lintel {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr const char* kName = "lintel-vio";
+
+std::string examples() {
+  return "Examples:\n"
+         "  lintel-vio MH_01_easy -o out                       an EuRoC folder (the one that holds mav0)\n"
+         "  lintel-vio flight.rawlog -o out --export glb,ply   a rawlog\n"
+         "  lintel-vio flight.rawlog -o out --from 10 --to 40  thirty seconds of it\n"
+         "  lintel-vio flight.rawlog -o out --set tracking.lines.enabled=false   points alone\n"
+         "  lintel-vio --dump-config > my.yaml                 every option with its default";
+}
+
+class LintelVio {
+ public:
+  LintelVio(std::ostream& out, std::ostream& err) : out_(out), err_(err) { addOptions(); }
+
+  int run(int argc, const char* const* argv) {
+    if (const auto exit_code = parseArguments(app_, argc, argv, out_, err_)) return *exit_code;
+    const Configuration configuration = readOptions();
+    if (dump_config_) {
+      out_ << writeConfiguration(configuration);
+      return 0;
+    }
+    checkCommandLine();
+    auto recording = openRecording(input_, recording_params_);
+    prepareOutput();
+    const auto start = std::chrono::steady_clock::now();
+    const OdometryResult result = process(*recording, configuration);
+    const double wall_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+    const std::vector<std::string> warnings = recording->warnings();
+    for (const std::string& warning : warnings) err_ << kName << ": warning: " << warning << "\n";
+    writeOutput(result, configuration, wall_s, warnings);
+    if (!quiet_) summarise(result, wall_s);
+    if (!result.error.empty()) throw RecordingError(result.error + " (what was computed until then is in " + output_ + ")");
+    if (result.trajectory.empty()) throw std::runtime_error(noPose(result));
+    return 0;
+  }
+
+ private:
+  void addOptions() {
+    app_.footer(examples());
+    app_.add_option("input", input_, "A rawlog or an EuRoC folder (mav0 or its parent)")->type_name("INPUT");
+    app_.add_option("-o,--output", output_, "Folder to write to; made if it does not exist")->type_name("OUT");
+    app_.add_option("-c,--config", config_, "Configuration; what it leaves out keeps its default")->type_name("CONFIG.yaml");
+    app_.add_option("--set", settings_, "Set one option, e.g. --set estimator.keyframes=8")
+        ->type_name("KEY=VALUE")
+        ->take_all()
+        ->allow_extra_args(false);
+    app_.add_option("--from", recording_params_.from_s, "Start this long after the first frame [s]")
+        ->check(CLI::NonNegativeNumber);
+    app_.add_option("--to", recording_params_.to_s, "Stop this long after the first frame [s]; 0 = at the end")
+        ->check(CLI::NonNegativeNumber);
+    app_.add_option("--threads", threads_, "1: one stage after the other; 2: tracking beside estimation. Same result")
+        ->check(CLI::Range(1, 64))
+        ->capture_default_str();
+    app_.add_option("--export", exports_, "Forms of the map to write, with commas between; none for no export")
+        ->delimiter(',')
+        ->allow_extra_args(false)
+        ->type_name("EXT,...");
+    app_.add_option("--draw-tracks", draw_tracks_, "Write every frame with its points and lines as a PNG to this folder")
+        ->type_name("DIR");
+    app_.add_flag("-w,--overwrite", overwrite_, "Write into OUT although it holds the results of an earlier run");
+    app_.add_flag("-q,--quiet", quiet_, "No progress, no summary");
+    app_.add_flag("--dump-config", dump_config_, "Print the effective configuration and stop");
+  }
+
+  Configuration readOptions() const {
+    Configuration configuration;
+    if (!config_.empty()) readConfiguration(config_, configuration);
+    for (const std::string& setting : settings_) setOption(setting, configuration);
+    return configuration;
+  }
+
+  void checkCommandLine() {
+    if (input_.empty()) throw UsageError("INPUT is missing: a rawlog or an EuRoC folder; see --help");
+    if (output_.empty()) throw UsageError("-o OUT is missing: the folder to write to");
+    if (recording_params_.to_s > 0 && recording_params_.to_s <= recording_params_.from_s)
+      throw UsageError("--to must be later than --from");
+    if (exports_.size() == 1 && exports_[0] == "none") exports_.clear();
+    for (const std::string& extension : exports_)
+      if (viewerHint(extension).empty()) throw UsageError("--export " + extension + ": there is no such form");
+    if (threads_ == 1) recording_params_.frames_ahead = 0;
+  }
+
+  void prepareOutput() const {
+    const fs::path out(output_);
+    if (fs::exists(out / "trajectory.tum") && !overwrite_)
+      throw std::runtime_error(output_ + ": holds the results of an earlier run; choose another folder or add -w");
+    std::error_code error;
+    fs::create_directories(out, error);
+    if (error) throw std::runtime_error(output_ + ": cannot be made: " + error.message() + "; choose another folder");
+    if (!draw_tracks_.empty()) fs::create_directories(draw_tracks_, error);
+    if (error) throw std::runtime_error(draw_tracks_ + ": cannot be made: " + error.message());
+  }
+
+  OdometryResult process(Recording& recording, const Configuration& configuration) {
+    Progress progress(err_, progressStyleFor(err_, quiet_), "processing", "frames", recording.expectedFrames());
+    const Rig rig = recording.rig();
+    return runOdometry(recording, configuration, threads_,
+                       [&](const Frame& frame, const FrameTracks& tracks, const WindowUpdate&, std::size_t done) {
+                         progress.update(done);
+                         if (draw_tracks_.empty()) return;
+                         char name[32];
+                         std::snprintf(name, sizeof name, "%06zu.png", done - 1);
+                         drawTracks((fs::path(draw_tracks_) / name).string(), frame, rig, tracks);
+                       });
+  }
+
+  void writeOutput(const OdometryResult& result, const Configuration& configuration, double wall_s,
+                   const std::vector<std::string>& warnings) {
+    const fs::path out(output_);
+    LineMap map = result.map;
+    map.configuration = writeConfiguration(configuration);
+    AtomicFile::writeWhole((out / "trajectory.tum").string(), trajectoryText(result.trajectory));
+    AtomicFile::writeWhole((out / "config.yaml").string(), map.configuration);
+    writeMap(map, (out / "map.lintel").string());
+    for (const std::string& extension : exports_)
+      for (const std::string& file : exportMap(map, (out / ("map." + extension)).string()).files)
+        exported_.push_back(file);
+    AtomicFile::writeWhole((out / "stats.json").string(), statisticsJson(result, wall_s, warnings));
+  }
+
+  void summarise(const OdometryResult& result, double wall_s) {
+    const OdometryStatistics& s = result.statistics;
+    double length = 0;
+    for (std::size_t i = 1; i < result.trajectory.size(); ++i)
+      length += (result.trajectory[i].T_w_b.p - result.trajectory[i - 1].T_w_b.p).norm();
+    out_ << std::fixed << std::setprecision(1);
+    out_ << s.frames << " frames in " << durationText(wall_s) << " ("
+         << static_cast<double>(s.frames) / std::max(wall_s, 1e-3) << " frames/s), " << s.frames_with_pose
+         << " with a pose, " << length << " m travelled";
+    if (s.first_pose_s > 0) out_ << ", first pose after " << s.first_pose_s << " s";
+    out_ << "\n";
+    for (const std::string& failure : s.failures) out_ << "started anew " << failure << "\n";
+    out_ << "map: " << result.map.lines.size() << " lines, " << result.map.points.size() << " points, "
+         << result.map.keyframes.size() << " keyframes\n";
+    const fs::path folder(output_);
+    out_ << "written: " << (folder / "trajectory.tum").string() << ", map.lintel, stats.json, config.yaml\n";
+    for (const std::string& file : exported_) {
+      std::string hint = viewerHint(fs::path(file).extension().string().substr(1));
+      if (const std::size_t place = hint.find("FILE"); place != std::string::npos) hint.replace(place, 4, file);
+      out_ << "  " << file << ": open it with " << hint << "\n";
+    }
+  }
+
+  std::string noPose(const OdometryResult& result) const {
+    if (result.statistics.frames == 0) return input_ + ": no frame between --from and --to; choose another range";
+    const std::string& wait = result.statistics.last_wait;
+    return input_ + ": no pose was found (" + (wait.empty() ? "too short" : wait) +
+           "); start where the camera moves and sees texture (--from), and check the calibration";
+  }
+
+  std::ostream& out_;
+  std::ostream& err_;
+  CLI::App app_{"Trajectory and 3D line map from a recording with a camera and an IMU.", kName};
+  std::string input_, output_, config_, draw_tracks_;
+  std::vector<std::string> settings_, exports_{"glb", "obj", "ply", "3Dscene", "png"}, exported_;
+  RecordingParams recording_params_;
+  int threads_ = 2;
+  bool overwrite_ = false, quiet_ = false, dump_config_ = false;
+};
+
+}  // namespace
+
+int runLintelVio(int argc, const char* const* argv, std::ostream& out, std::ostream& err) {
+  return programMain(kName, err, [&] { return LintelVio(out, err).run(argc, argv); });
+}
+
+}  // namespace lintel

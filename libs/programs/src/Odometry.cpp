@@ -1,0 +1,161 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "Odometry.h"
+
+#include <cstdio>
+#include <exception>
+#include <thread>
+
+#include "BoundedQueue.h"
+#include "lintel/tracking/FrontEnd.h"
+
+namespace lintel {
+
+namespace {
+
+/// What tracking hands to estimation.
+struct TrackedFrame {
+  FrameWithImu step;
+  FrameTracks tracks;
+};
+
+/// Estimation and mapping: the second half of the pipeline.
+class BackEnd {
+ public:
+  BackEnd(const Rig& rig, const Configuration& configuration, const OdometryObserver& observer, OdometryResult& result)
+      : rig_(rig), estimator_(rig, configuration.estimator), map_(rig, configuration.map), observer_(observer),
+        result_(result) {}
+
+  void process(const TrackedFrame& frame) {
+    OdometryStatistics& s = result_.statistics;
+    WindowUpdate update;
+    {
+      const StageClock::Scope scope(s.estimation);
+      update = estimator_.process(frame.tracks, frame.step.imu);
+    }
+    if (s.frames++ == 0) first_t_ns_ = update.t_ns;
+    count(update);
+    map_.add(update);
+    if (update.hasPose()) result_.trajectory.push_back({update.t_ns, update.T_w_b});
+    if (observer_) observer_(frame.step.frame, frame.tracks, update, s.frames);
+  }
+
+  void finish() {
+    const CalibrationEstimate calibration = estimator_.calibration();
+    result_.rig = rig_;
+    result_.rig.camera = calibration.camera;
+    result_.rig.T_b_c = calibration.T_b_c;
+    result_.time_offset_s = calibration.time_offset_s;
+    map_.add(estimator_.finish());
+    map_.setRig(result_.rig);
+    result_.map = map_.build();
+    OdometryStatistics& s = result_.statistics;
+    s.keyframes = result_.map.keyframes.size();
+    if (s.window_frames == 0) return;
+    const auto n = static_cast<double>(s.window_frames);
+    for (double* mean : {&s.mean_points_used, &s.mean_lines_tracked, &s.mean_lines_used, &s.mean_lines_degenerate})
+      *mean /= n;
+  }
+
+ private:
+  void count(const WindowUpdate& update) {
+    OdometryStatistics& s = result_.statistics;
+    const double t_s = 1e-9 * static_cast<double>(update.t_ns - first_t_ns_);
+    if (update.hasPose()) {
+      ++s.frames_with_pose;
+      if (s.first_pose_s < 0) s.first_pose_s = t_s;
+    } else if (update.status == EstimatorStatus::kInitializing && update.reason != "between window frames") {
+      s.last_wait = update.reason;
+    }
+    if (update.status == EstimatorStatus::kLost) {
+      ++s.resets;
+      char text[64];
+      std::snprintf(text, sizeof text, "at %.2f s: ", t_s);
+      s.failures.push_back(text + update.reason);
+    }
+    if (update.status != EstimatorStatus::kTracking) return;
+    ++s.window_frames;
+    s.mean_points_used += update.points_used;
+    s.mean_lines_tracked += update.lines_tracked;
+    s.mean_lines_used += update.lines_used;
+    s.mean_lines_degenerate += update.lines_degenerate;
+  }
+
+  Rig rig_;
+  Estimator estimator_;
+  MapBuilder map_;
+  const OdometryObserver& observer_;
+  OdometryResult& result_;
+  std::int64_t first_t_ns_ = 0;
+};
+
+/// Reading and tracking: the first half. False at the end of the recording; a fault ends it with `error` set.
+class FirstHalf {
+ public:
+  FirstHalf(Recording& recording, const Configuration& configuration, OdometryResult& result)
+      : recording_(recording), front_end_(recording.rig(), configuration.tracking), result_(result) {}
+
+  std::optional<TrackedFrame> next() {
+    TrackedFrame frame;
+    try {
+      const StageClock::Scope scope(result_.statistics.decoding);
+      auto step = recording_.next();
+      if (!step) return std::nullopt;
+      frame.step = std::move(*step);
+    } catch (const RecordingError& e) {
+      result_.error = e.what();
+      return std::nullopt;
+    }
+    const StageClock::Scope scope(result_.statistics.tracking);
+    frame.tracks = front_end_.process(frame.step.frame, frame.step.imu);
+    return frame;
+  }
+
+  const FrontEndStatistics& statistics() const { return front_end_.statistics(); }
+
+ private:
+  Recording& recording_;
+  FrontEnd front_end_;
+  OdometryResult& result_;
+};
+
+void runOnTwoThreads(FirstHalf& first, BackEnd& back) {
+  BoundedQueue<TrackedFrame> queue(4);
+  std::exception_ptr failure;
+  std::thread tracking([&] {
+    try {
+      while (auto frame = first.next())
+        if (!queue.push(std::move(*frame))) break;
+    } catch (...) {
+      failure = std::current_exception();
+    }
+    queue.close();
+  });
+  try {
+    while (auto frame = queue.pop()) back.process(*frame);
+  } catch (...) {
+    queue.close();
+    tracking.join();
+    throw;
+  }
+  tracking.join();
+  if (failure) std::rethrow_exception(failure);
+}
+
+}  // namespace
+
+OdometryResult runOdometry(Recording& recording, const Configuration& configuration, int threads,
+                           const OdometryObserver& observer) {
+  OdometryResult result;
+  FirstHalf first(recording, configuration, result);
+  BackEnd back(recording.rig(), configuration, observer, result);
+  if (threads > 1) {
+    runOnTwoThreads(first, back);
+  } else {
+    while (auto frame = first.next()) back.process(*frame);
+  }
+  back.finish();
+  result.statistics.front_end = first.statistics();
+  return result;
+}
+
+}  // namespace lintel

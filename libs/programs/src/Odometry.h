@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "Configuration.h"
+#include "StageClock.h"
+#include "lintel/estimator/Estimator.h"
+#include "lintel/mapping/LineMap.h"
+#include "lintel/sensing/Recording.h"
+#include "lintel/tracking/FrontEndStatistics.h"
+
+namespace lintel {
+
+/// One pose of the causal trajectory.
+struct OdometryPose {
+  std::int64_t t_ns = 0;
+  Pose T_w_b;
+};
+
+/// What a run counted.
+struct OdometryStatistics {
+  std::size_t frames = 0, frames_with_pose = 0, window_frames = 0, keyframes = 0, resets = 0;
+  double first_pose_s = -1;  ///< after the first frame
+  double mean_points_used = 0, mean_lines_tracked = 0, mean_lines_used = 0, mean_lines_degenerate = 0;
+  std::vector<std::string> failures;  ///< time and reason of each reset
+  std::string last_wait;              ///< what initialisation waited for last
+  StageClock decoding, tracking, estimation;
+  FrontEndStatistics front_end;
+};
+
+struct OdometryResult {
+  std::vector<OdometryPose> trajectory;
+  LineMap map;
+  Rig rig;  ///< as refined
+  double time_offset_s = 0;
+  OdometryStatistics statistics;
+  std::string error;  ///< why the recording ended early; empty when it was read to its end
+};
+
+/// Called for every frame, from the calling thread: the frame, its tracks, and how many are done.
+using OdometryObserver = std::function<void(const Frame&, const FrameTracks&, const WindowUpdate&, std::size_t)>;
+
+/// Recording in, trajectory and map out. With `threads` > 1 tracking runs on a thread of its own; the result does not
+/// depend on it. A recording that breaks off gives what was computed until then, with `error` set.
+OdometryResult runOdometry(Recording& recording, const Configuration& configuration, int threads,
+                           const OdometryObserver& observer);
+
+}  // namespace lintel

@@ -1,0 +1,116 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "VioOutput.h"
+
+#include <sys/resource.h>
+
+#include <algorithm>
+#include <cinttypes>
+#include <cstdio>
+#include <nlohmann/json.hpp>
+
+namespace lintel {
+
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+Json stageJson(std::vector<double> ms) {
+  std::sort(ms.begin(), ms.end());
+  const auto quantile = [&](double q) {
+    return ms.empty() ? 0 : ms[std::min(ms.size() - 1, static_cast<std::size_t>(q * static_cast<double>(ms.size())))];
+  };
+  double sum = 0;
+  for (const double v : ms) sum += v;
+  return {{"count", ms.size()},
+          {"mean_ms", ms.empty() ? 0 : sum / static_cast<double>(ms.size())},
+          {"median_ms", quantile(0.5)},
+          {"p95_ms", quantile(0.95)},
+          {"max_ms", ms.empty() ? 0 : ms.back()}};
+}
+
+Json stagesJson(const OdometryStatistics& s) {
+  Json stages{{"decoding", stageJson(s.decoding.ms())},
+              {"tracking", stageJson(s.tracking.ms())},
+              {"estimation", stageJson(s.estimation.ms())}};
+  for (const auto& [name, times] : s.front_end.stages)
+    stages["tracking: " + name] = stageJson(std::vector<double>(times.ms.begin(), times.ms.end()));
+  return stages;
+}
+
+Json trackingJson(const FrontEndStatistics& f) {
+  return {{"points",
+           {{"tracked", f.points.tracked},
+            {"detected", f.points.detected},
+            {"lost_klt", f.points.lost_klt},
+            {"lost_backward", f.points.lost_backward},
+            {"lost_epipolar", f.points.lost_epipolar},
+            {"median_length", f.points.lifetimes.median()}}},
+          {"lines",
+           {{"tracked", f.lines.tracked},
+            {"created", f.lines.created},
+            {"detections", f.lines.detections},
+            {"merged", f.lines.merged},
+            {"share_seen_in_10_frames", f.lines.lifetimes.shareOfAtLeast(10)},
+            {"median_length", f.lines.lifetimes.median()}}}};
+}
+
+}  // namespace
+
+std::string trajectoryText(const std::vector<OdometryPose>& trajectory) {
+  std::string text = "# timestamp tx ty tz qx qy qz qw\n";
+  char line[256];
+  for (const OdometryPose& pose : trajectory) {
+    const Eigen::Vector3d& p = pose.T_w_b.p;
+    const Eigen::Quaterniond& q = pose.T_w_b.q;
+    std::snprintf(line, sizeof line, "%" PRId64 ".%09" PRId64 " %.9f %.9f %.9f %.9f %.9f %.9f %.9f\n",
+                  pose.t_ns / 1000000000, pose.t_ns % 1000000000, p.x(), p.y(), p.z(), q.x(), q.y(), q.z(), q.w());
+    text += line;
+  }
+  return text;
+}
+
+std::string statisticsJson(const OdometryResult& result, double wall_s, const std::vector<std::string>& warnings) {
+  const OdometryStatistics& s = result.statistics;
+  double cpu_ms = 0;
+  for (const StageClock* clock : {&s.tracking, &s.estimation})
+    for (const double ms : clock->ms()) cpu_ms += ms;
+  const auto& c = result.rig.camera;
+  const Json json{
+      {"frames", s.frames},
+      {"frames_with_pose", s.frames_with_pose},
+      {"window_frames", s.window_frames},
+      {"keyframes", s.keyframes},
+      {"first_pose_s", s.first_pose_s},
+      {"resets", s.resets},
+      {"reset_reasons", s.failures},
+      {"mean_points_used", s.mean_points_used},
+      {"mean_lines_tracked", s.mean_lines_tracked},
+      {"mean_lines_used", s.mean_lines_used},
+      {"mean_lines_degenerate", s.mean_lines_degenerate},
+      {"map_points", result.map.points.size()},
+      {"map_lines", result.map.lines.size()},
+      {"calibration",
+       {{"intrinsics_px", {c.fx, c.fy, c.cx, c.cy}},
+        {"distortion", {c.k1, c.k2, c.p1, c.p2}},
+        {"p_b_c_m", {result.rig.T_b_c.p.x(), result.rig.T_b_c.p.y(), result.rig.T_b_c.p.z()}},
+        {"q_b_c_xyzw",
+         {result.rig.T_b_c.q.x(), result.rig.T_b_c.q.y(), result.rig.T_b_c.q.z(), result.rig.T_b_c.q.w()}},
+        {"time_offset_s", result.time_offset_s}}},
+      {"cpu_ms_per_frame", s.frames > 0 ? cpu_ms / static_cast<double>(s.frames) : 0},
+      {"wall_s", wall_s},
+      {"frames_per_s", wall_s > 0 ? static_cast<double>(s.frames) / wall_s : 0},
+      {"peak_memory_mb", peakMemoryMb()},
+      {"stages", stagesJson(s)},
+      {"tracking", trackingJson(s.front_end)},
+      {"warnings", warnings},
+      {"ended_early", result.error}};
+  return json.dump(2) + "\n";
+}
+
+double peakMemoryMb() {
+  rusage usage{};
+  getrusage(RUSAGE_SELF, &usage);
+  return static_cast<double>(usage.ru_maxrss) / 1024.0;  // kilobytes on Linux
+}
+
+}  // namespace lintel

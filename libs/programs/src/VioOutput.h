@@ -1,0 +1,20 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "Odometry.h"
+
+namespace lintel {
+
+/// The trajectory as TUM text: `t x y z qx qy qz qw`, seconds with 9 decimals.
+std::string trajectoryText(const std::vector<OdometryPose>& trajectory);
+
+/// Figures of a run as JSON (stats.json).
+std::string statisticsJson(const OdometryResult& result, double wall_s, const std::vector<std::string>& warnings);
+
+/// Peak resident memory of this process [MB].
+double peakMemoryMb();
+
+}  // namespace lintel
