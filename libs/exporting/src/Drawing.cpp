@@ -155,7 +155,7 @@ Drawing makeDrawing(const LineMap& map, const ExportParams& params) {
   if (layers.count(MapLayer::kLines)) selectLines(map, params, drawing);
   drawing.core = coreOf(drawing);
   const double extent_m = std::max(drawing.core.diagonal().norm(), 1e-3);
-  drawing.radius_m = params.radius_m > 0 ? params.radius_m : std::clamp(0.0012 * extent_m, 1e-5, 0.05);
+  drawing.radius_m = params.radius_m > 0 ? params.radius_m : std::clamp(0.0015 * extent_m, 1e-5, 0.05);
   drawing.frustum_m = std::clamp(0.02 * extent_m, 1e-4, 0.3);
   addLines(params, drawing);
   if (layers.count(MapLayer::kPoints)) addPoints(params, drawing);

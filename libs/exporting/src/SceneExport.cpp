@@ -21,7 +21,7 @@ namespace {
 
 using namespace mrpt::opengl;
 
-constexpr float kLineWidth_px = 1.5F, kPointSize_px = 2;
+constexpr float kLineWidth_px = 2, kPointSize_px = 2;
 
 mrpt::img::TColor colourOf(Rgb c) { return {c.r, c.g, c.b}; }
 

@@ -1,0 +1,152 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "lintel/programs/LintelMap.h"
+
+#include <CLI/App.hpp>
+#include <CLI/Config.hpp>
+#include <CLI/Formatter.hpp>
+#include <algorithm>
+#include <filesystem>
+#include <map>
+#include <ostream>
+#include <string>
+#include <vector>
+
+#include "ProgramMain.h"
+#include "lintel/exporting/MapExport.h"
+#include "lintel/mapping/MapFile.h"
+
+namespace lintel {
+
+namespace {
+
+constexpr const char* kName = "lintel-map";
+
+const std::map<std::string, LineStyle> kStyles{{"lines", LineStyle::kLines}, {"tubes", LineStyle::kTubes}};
+const std::map<std::string, LineColour> kColours{{"kind", LineColour::kKind},
+                                                 {"group", LineColour::kGroup},
+                                                 {"uncertainty", LineColour::kUncertainty},
+                                                 {"height", LineColour::kHeight}};
+const std::map<std::string, MapLayer> kLayers{{"lines", MapLayer::kLines},
+                                              {"points", MapLayer::kPoints},
+                                              {"keyframes", MapLayer::kKeyframes},
+                                              {"trajectory", MapLayer::kTrajectory}};
+
+template <class Value>
+CLI::Validator oneOf(const std::map<std::string, Value>& names) {
+  std::vector<std::string> list;
+  for (const auto& entry : names) list.push_back(entry.first);
+  return CLI::IsMember(list);
+}
+
+std::string examples() {
+  return "Examples:\n"
+         "  lintel-map map.lintel -o map.glb                       for f3d, Blender, browsers\n"
+         "  lintel-map map.lintel -o map.ply                       tubes, as MeshLab shows no lines\n"
+         "  lintel-map map.lintel -o map.png --colour height       a picture: above, first camera, side\n"
+         "  lintel-map map.lintel -o map.csv --min-observations 5  a table of the well-seen lines\n"
+         "  lintel-map map.lintel -o map.obj --layers lines,trajectory --radius 0.01";
+}
+
+std::string extensionOf(const std::string& path) {
+  const std::string extension = std::filesystem::path(path).extension().string();
+  return extension.empty() ? extension : extension.substr(1);
+}
+
+class LintelMap {
+ public:
+  LintelMap(std::ostream& out, std::ostream& err) : out_(out), err_(err) { addOptions(); }
+
+  int run(int argc, const char* const* argv) {
+    if (const auto exit_code = parseArguments(app_, argc, argv, out_, err_)) return *exit_code;
+    for (const std::string& output : outputs_) {
+      if (!viewerHint(extensionOf(output)).empty()) continue;
+      throw UsageError("no form of export has the extension of " + output + "; take one of " + formats());
+    }
+    const ExportParams params = exportParams();
+    const LineMap map = readMap(input_);
+    for (const std::string& output : outputs_) report(exportMap(map, output, params));
+    return 0;
+  }
+
+ private:
+  static std::string formats() {
+    std::string list;
+    for (const std::string& extension : exportFormats()) list += (list.empty() ? "" : " ") + extension;
+    return list;
+  }
+
+  void addOptions() {
+    app_.footer(examples());
+    app_.add_option("map", input_, "The native map file, as lintel-vio writes it")->required()->type_name("MAP.lintel");
+    app_.add_option("-o,--output", outputs_,
+                    "File to write (several -o give several); its extension chooses the form: " + formats())
+        ->required()
+        ->type_name("FILE.EXT")
+        ->take_all()
+        ->allow_extra_args(false);
+    app_.add_option("--as", style_, "Draw lines as strokes or as tubes; default by the form: tubes for obj and ply")
+        ->check(oneOf(kStyles));
+    app_.add_option("--radius", params_.radius_m, "Radius of tubes [m]; default by the map's extent")
+        ->check(CLI::PositiveNumber);
+    app_.add_option("--colour,--color", colour_, "What a line's colour says")
+        ->check(oneOf(kColours))
+        ->capture_default_str();
+    app_.add_option("--min-observations", params_.min_observations,
+                    "Leave out lines and points seen in fewer keyframes")
+        ->check(CLI::NonNegativeNumber);
+    app_.add_option("--min-length", params_.min_length_m, "Leave out shorter lines [m]")->check(CLI::NonNegativeNumber);
+    app_.add_option("--max-sigma", params_.max_sigma_m,
+                    "Leave out lines and points with a greater standard deviation of position [m]")
+        ->check(CLI::NonNegativeNumber);
+    app_.add_option("--layers", layers_,
+                    "What to show, with commas between: lines,points,keyframes,trajectory; default by the form")
+        ->delimiter(',')
+        ->allow_extra_args(false)
+        ->check(oneOf(kLayers))
+        ->type_name("LAYERS");
+    app_.add_flag("--quiet,-q", quiet_, "Print nothing");
+  }
+
+  ExportParams exportParams() const {
+    ExportParams params = params_;
+    if (!style_.empty()) params.style = kStyles.at(style_);
+    params.colour = kColours.at(colour_);
+    if (!layers_.empty()) params.layers.emplace();
+    for (const std::string& layer : layers_) params.layers->insert(kLayers.at(layer));
+    return params;
+  }
+
+  void report(const ExportSummary& summary) {
+    if (summary.dropped > 0) {
+      err_ << kName << ": " << summary.files.front() << ": left out " << summary.dropped
+           << " lines, points or poses without finite numbers or length\n";
+    }
+    if (quiet_) return;
+    const std::string& file = summary.files.front();
+    out_ << file << ": " << summary.lines << " lines";
+    if (summary.points > 0) out_ << ", " << summary.points << " points";
+    if (summary.keyframes > 0) out_ << ", " << summary.keyframes << " keyframes";
+    if (summary.trajectory > 0) out_ << ", " << summary.trajectory << " poses";
+    if (summary.filtered > 0) out_ << "; " << summary.filtered << " lines left out by the filters";
+    std::string hint = viewerHint(extensionOf(file));
+    const std::size_t place = hint.find("FILE");
+    if (place != std::string::npos) hint.replace(place, 4, file);
+    out_ << "\n  open it with " << hint << "\n";
+  }
+
+  std::ostream& out_;
+  std::ostream& err_;
+  CLI::App app_{"Writes a line map in a form that other programs open.", kName};
+  std::string input_, style_, colour_ = "kind";
+  std::vector<std::string> outputs_, layers_;
+  ExportParams params_;
+  bool quiet_ = false;
+};
+
+}  // namespace
+
+int runLintelMap(int argc, const char* const* argv, std::ostream& out, std::ostream& err) {
+  return programMain(kName, err, [&] { return LintelMap(out, err).run(argc, argv); });
+}
+
+}  // namespace lintel

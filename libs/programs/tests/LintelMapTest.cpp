@@ -1,0 +1,112 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "lintel/programs/LintelMap.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <sstream>
+#include <string>
+#include <vector>
+
+#include "lintel/mapping/MapFile.h"
+
+namespace lintel {
+namespace {
+
+using ::testing::HasSubstr;
+
+class LintelMapTest : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    const auto* test = ::testing::UnitTest::GetInstance()->current_test_info();
+    folder_ = std::filesystem::temp_directory_path() /
+              ("lintel_map_" + std::string(test->name()) + std::to_string(::getpid()));
+    std::filesystem::create_directories(folder_);
+    LineMap map;
+    for (std::uint64_t i = 0; i < 3; ++i) {
+      MapLine line;
+      line.id = i;
+      line.segment_w.end = {1.0 + static_cast<double>(i), 0, 0};
+      line.observations.resize(2 * i);
+      map.lines.push_back(line);
+    }
+    writeMap(map, in("map.lintel"));
+  }
+  void TearDown() override { std::filesystem::remove_all(folder_); }
+
+  std::string in(const std::string& name) const { return (folder_ / name).string(); }
+  bool exists(const std::string& name) const { return std::filesystem::exists(in(name)); }
+
+  int run(std::vector<std::string> arguments) {
+    std::vector<const char*> argv{"lintel-map"};
+    for (const std::string& argument : arguments) argv.push_back(argument.c_str());
+    out_.str(""), err_.str("");
+    return runLintelMap(static_cast<int>(argv.size()), argv.data(), out_, err_);
+  }
+
+  std::filesystem::path folder_;
+  std::ostringstream out_, err_;
+};
+
+TEST_F(LintelMapTest, WritesTheFormThatTheExtensionNames) {
+  EXPECT_EQ(run({in("map.lintel"), "-o", in("map.glb"), "-o", in("map.ply")}), 0);
+  EXPECT_TRUE(exists("map.glb") && exists("map.ply"));
+  EXPECT_THAT(out_.str(), HasSubstr("map.glb: 3 lines"));
+  EXPECT_THAT(out_.str(), HasSubstr("f3d " + in("map.glb")));
+  EXPECT_EQ(err_.str(), "");
+}
+
+TEST_F(LintelMapTest, HeedsEveryOption) {
+  EXPECT_EQ(run({in("map.lintel"), "-o", in("map.csv"), "--min-observations", "3", "--min-length", "1.5", "--max-sigma",
+                 "0.5", "--as", "tubes", "--radius", "0.1", "--colour", "height", "--layers", "lines,trajectory"}),
+            0);
+  EXPECT_THAT(out_.str(), HasSubstr("map.csv: 1 lines; 2 lines left out by the filters"));
+  EXPECT_EQ(run({in("map.lintel"), "-o", in("map.csv"), "--quiet"}), 0);
+  EXPECT_EQ(out_.str(), "");
+}
+
+TEST_F(LintelMapTest, WrongUseIsTwo) {
+  EXPECT_EQ(run({}), 2);
+  EXPECT_EQ(run({in("map.lintel")}), 2);
+  EXPECT_EQ(run({in("map.lintel"), "-o", in("map.stl")}), 2);
+  EXPECT_THAT(err_.str(), HasSubstr("glb"));
+  EXPECT_EQ(run({in("map.lintel"), "-o", in("map.ply"), "--as", "dots"}), 2);
+  EXPECT_EQ(run({in("map.lintel"), "-o", in("map.ply"), "--radius", "-1"}), 2);
+  EXPECT_EQ(run({in("map.lintel"), "-o", in("map.ply"), "--layers", "lines,planes"}), 2);
+  EXPECT_FALSE(exists("map.ply"));
+}
+
+TEST_F(LintelMapTest, BadFilesAreOneWithOneLine) {
+  EXPECT_EQ(run({in("none.lintel"), "-o", in("map.ply")}), 1);
+  EXPECT_THAT(err_.str(), HasSubstr("none.lintel"));
+  EXPECT_EQ(run({in("map.lintel"), "-o", in("none/map.ply")}), 1);
+  EXPECT_THAT(err_.str(), HasSubstr("none/map.ply"));
+  std::filesystem::create_symlink("/dev/full", in("full.ply"));
+  EXPECT_EQ(run({in("map.lintel"), "-o", in("full.ply")}), 1);
+  const std::string text = err_.str();
+  EXPECT_EQ(std::count(text.begin(), text.end(), '\n'), 1) << text;
+}
+
+TEST_F(LintelMapTest, HelpHasExamples) {
+  EXPECT_EQ(run({"--help"}), 0);
+  EXPECT_THAT(out_.str(), HasSubstr("lintel-map map.lintel -o map.glb"));
+  EXPECT_EQ(run({"--version"}), 0);
+  EXPECT_THAT(out_.str(), HasSubstr("lintel-map 0."));
+}
+
+TEST_F(LintelMapTest, WhatIsNotFiniteIsSaid) {
+  LineMap map;
+  map.lines.resize(2);
+  map.lines[0].segment_w.end = {1, 2, 3};
+  map.lines[1].segment_w.end = {std::nan(""), 2, 3};
+  writeMap(map, in("map.lintel"));
+  EXPECT_EQ(run({in("map.lintel"), "-o", in("map.ply")}), 0);
+  EXPECT_THAT(err_.str(), HasSubstr("left out 1"));
+}
+
+}  // namespace
+}  // namespace lintel
