@@ -1,0 +1,158 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "lintel/programs/LintelSim.h"
+
+#include <CLI/App.hpp>
+#include <CLI/Config.hpp>
+#include <CLI/Formatter.hpp>
+#include <filesystem>
+#include <iomanip>
+#include <ostream>
+#include <string>
+#include <thread>
+
+#include "ProgramMain.h"
+#include "Progress.h"
+#include "lintel/simulation/Simulation.h"
+
+namespace lintel {
+
+namespace {
+
+namespace fs = std::filesystem;
+constexpr const char* kName = "lintel-sim";
+
+class LintelSim {
+ public:
+  LintelSim(std::ostream& out, std::ostream& err) : out_(out), err_(err) {
+    params_.threads = static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
+    addOptions();
+    addMotionOptions();
+    addFaultOptions();
+  }
+
+  int run(int argc, const char* const* argv) {
+    if (const auto exit_code = parseArguments(app_, argc, argv, out_, err_)) return *exit_code;
+    const fs::path folder = fs::path(folder_ + "/.").lexically_normal().parent_path();  // without a slash at the end
+    refuseToOverwrite(folder);
+    if (noise_free_) {
+      params_.imu.noise = params_.imu.biases = false;
+      params_.camera.noise = 0;
+    }
+    const Simulation simulation(params_);
+    const SimulationSummary summary = write(simulation, folder);
+    if (!quiet_) print(summary, folder);
+    return 0;
+  }
+
+ private:
+  void addOptions() {
+    std::string scenes;
+    std::vector<std::string> names;
+    for (const SceneKind& kind : sceneKinds()) {
+      scenes += (scenes.empty() ? "" : "; ") + kind.name + ": " + kind.description;
+      names.push_back(kind.name);
+    }
+    app_.add_option("-o,--output", folder_, "Folder to make, in the form of the EuRoC recordings")
+        ->required()
+        ->type_name("FOLDER");
+    app_.add_option("--scene", params_.scene, scenes)->check(CLI::IsMember(names))->capture_default_str();
+    app_.add_option("--duration", params_.duration_s, "Length [s]; 0 = 30, or the whole trajectory file")
+        ->check(CLI::NonNegativeNumber)
+        ->capture_default_str();
+    app_.add_option("--seed", params_.seed, "Another seed: other textures, furniture, noise, biases")
+        ->capture_default_str();
+    app_.add_option("--threads", params_.threads, "Threads; the files do not depend on their number")
+        ->check(CLI::PositiveNumber)
+        ->capture_default_str();
+    app_.add_flag("--noise-free", noise_free_, "No IMU noise, zero biases, no image noise");
+    app_.add_flag("-w,--overwrite", overwrite_, "Replace the folder if it is there");
+    app_.add_flag("-q,--quiet", quiet_, "Print nothing");
+  }
+
+  void addMotionOptions() {
+    MotionParams& motion = params_.motion;
+    app_.add_option("--trajectory", motion.trajectory_file, "Follow these poses: TUM, or an EuRoC state CSV")
+        ->type_name("GT");
+    app_.add_option("--start", motion.start_s, "Skip so much of the trajectory file [s]")
+        ->check(CLI::NonNegativeNumber)
+        ->capture_default_str();
+    app_.add_option("--figure", motion.figure,
+                    "Built-in motion: full, translation (fixed attitude) or rotation (fixed place)")
+        ->check(CLI::IsMember({"full", "translation", "rotation"}))
+        ->capture_default_str();
+    app_.add_option("--speed", motion.speed, "How fast the figure is flown")
+        ->check(CLI::PositiveNumber)
+        ->capture_default_str();
+    app_.add_option("--static-start", motion.static_s, "Rest at the start [s]")
+        ->check(CLI::NonNegativeNumber)
+        ->capture_default_str();
+  }
+
+  void addFaultOptions() {
+    CameraSensorParams& camera = params_.camera;
+    const auto number = [this](const char* name, double& value, const char* help) {
+      return app_.add_option(name, value, help)->check(CLI::NonNegativeNumber)->capture_default_str();
+    };
+    number("--image-noise", camera.noise, "Image noise; 1 = about one grey level");
+    number("--imu-noise", params_.imu.noise_scale, "IMU noise; 1 = EuRoC's");
+    number("--blur", camera.exposure_time_s, "Exposure time: motion blur [s]");
+    number("--exposure-change", camera.exposure_change, "Changes of the exposure (deviation of its logarithm)");
+    number("--vignetting", camera.vignetting, "Darkening in the corners")->check(CLI::Range(0.0, 1.0));
+    app_.add_option("--camera-delay", params_.camera_delay_s, "Images are older than their stamps by so much [s]")
+        ->check(CLI::Range(-0.1, 0.1))
+        ->capture_default_str();
+    number("--calibration-error", params_.calibration_error,
+           "sensor.yaml is wrong by so much; 1 = as a fair calibration");
+    number("--drop-images", params_.drop_images_every_s, "0.3 s without images so often [s]; 0 = never");
+    number("--drop-imu", params_.drop_imu_every_s, "0.1 s without IMU so often [s]; 0 = never");
+  }
+
+  void refuseToOverwrite(const fs::path& folder) const {
+    if (!fs::exists(folder)) return;
+    if (!overwrite_) throw std::runtime_error(folder.string() + ": is there already; give -w to replace it");
+    const bool replaceable = fs::is_directory(folder) && (fs::is_empty(folder) || fs::exists(folder / "mav0"));
+    if (!replaceable)
+      throw std::runtime_error(folder.string() + ": is no recording; not replaced, choose another folder");
+  }
+
+  /// Beside the folder, then under its name: nobody sees half a recording.
+  SimulationSummary write(const Simulation& simulation, const fs::path& folder) const {
+    const fs::path part = folder.string() + ".part";
+    if (fs::exists(part / "mav0") || (fs::is_directory(part) && fs::is_empty(part))) fs::remove_all(part);
+    if (fs::exists(part)) throw std::runtime_error(part.string() + ": is in the way; move it");
+    Progress progress(err_, progressStyleFor(err_, quiet_), "rendering", "frames", simulation.images());
+    const SimulationSummary summary = simulation.write(part.string(), [&](std::size_t done) { progress.update(done); });
+    progress.clear();
+    if (fs::exists(folder)) fs::remove_all(folder);
+    fs::rename(part, folder);
+    return summary;
+  }
+
+  void print(const SimulationSummary& s, const fs::path& folder) const {
+    const fs::path mav0 = folder / "mav0";
+    out_ << std::fixed << std::setprecision(2) << params_.scene << ": " << s.duration_s << " s, " << s.images
+         << " images, " << s.imu_samples << " IMU samples\n"
+         << "motion: path " << s.path_m << " m, mean speed " << s.mean_speed_m_s << " m/s, greatest rate "
+         << s.max_rate_rad_s << " rad/s, greatest acceleration " << s.max_accel_m_s2 << " m/s^2\n"
+         << "lines: " << s.lines << ", seen " << s.lines_seen << "\n"
+         << "recording:    " << folder.string() << "\n"
+         << "ground truth: " << (mav0 / "state_groundtruth_estimate0/data.csv").string() << "\n"
+         << "true lines:   " << (mav0 / "lines0/data.csv").string() << "\n"
+         << "true surface: " << (mav0 / "scene0/scene.ply").string() << "\n";
+  }
+
+  std::ostream& out_;
+  std::ostream& err_;
+  CLI::App app_{"Makes a simulated recording: images, IMU, and everything true about them.", kName};
+  std::string folder_;
+  SimulationParams params_;
+  bool noise_free_ = false, overwrite_ = false, quiet_ = false;
+};
+
+}  // namespace
+
+int runLintelSim(int argc, const char* const* argv, std::ostream& out, std::ostream& err) {
+  return programMain(kName, err, [&] { return LintelSim(out, err).run(argc, argv); });
+}
+
+}  // namespace lintel
