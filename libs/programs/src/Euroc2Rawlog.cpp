@@ -1,0 +1,83 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "lintel/programs/Euroc2Rawlog.h"
+
+#include <CLI/App.hpp>
+#include <CLI/Config.hpp>
+#include <CLI/Formatter.hpp>
+#include <cstdio>
+#include <filesystem>
+#include <ostream>
+#include <string>
+
+#include "ProgramMain.h"
+#include "Progress.h"
+#include "lintel/sensing/EurocToRawlog.h"
+
+namespace lintel {
+namespace {
+
+constexpr const char* kName = "euroc2rawlog";
+
+class Euroc2Rawlog {
+ public:
+  Euroc2Rawlog(std::ostream& out, std::ostream& err) : out_(out), err_(err) { addOptions(); }
+
+  int run(int argc, const char* const* argv) {
+    if (const auto exit_code = parseArguments(app_, argc, argv, out_, err_)) return *exit_code;
+    if (std::filesystem::path(output_).extension() != ".rawlog")
+      throw UsageError("-o must name a file ending in .rawlog");
+    const EurocToRawlogSummary summary = convert();
+    for (const std::string& warning : summary.warnings) err_ << kName << ": warning: " << warning << "\n";
+    if (!quiet_) print(summary);
+    return 0;
+  }
+
+ private:
+  void addOptions() {
+    app_.add_option("-i,--input", input_, "EuRoC folder: .../mav0 or its parent")->required()->type_name("FOLDER");
+    app_.add_option("-o,--output", output_, "Rawlog to write")->required()->type_name("FILE.rawlog");
+    app_.add_flag("-w,--overwrite", params_.overwrite, "Replace an existing rawlog and its image folder");
+    app_.add_flag("-q,--quiet", quiet_, "Print warnings and errors only");
+    app_.add_option("-z,--compress-level", params_.compress_level, "gzip level of the rawlog, 0 = not compressed")
+        ->check(CLI::Range(0, 9))
+        ->capture_default_str();
+    auto* embed = app_.add_flag("--embed", params_.embed, "Put the images into the rawlog instead of FILE_Images/");
+    app_.add_flag("--copy", params_.copy, "Copy the images into FILE_Images/ instead of linking them")->excludes(embed);
+    app_.add_option("--cameras", params_.cameras, "Cameras to write, e.g. cam0,cam1; all by default")
+        ->delimiter(',')
+        ->type_name("CAMERAS");
+  }
+
+  EurocToRawlogSummary convert() {
+    Progress progress(err_, progressStyleFor(err_, quiet_), "writing " + output_, "images", 0);
+    return eurocToRawlog(input_, output_, params_,
+                         [&](std::size_t done, std::size_t total) { progress.update(done, total); });
+  }
+
+  void print(const EurocToRawlogSummary& summary) const {
+    char duration[32];
+    std::snprintf(duration, sizeof duration, "%.2f s", static_cast<double>(summary.last_ns - summary.first_ns) * 1e-9);
+    out_ << output_ << ": " << duration << ", ";
+    for (const auto& [label, count] : summary.images) out_ << count << " images " << label << ", ";
+    out_ << summary.imu_samples << " samples imu0";
+    if (summary.groundtruth_poses > 0) out_ << ", " << summary.groundtruth_poses << " poses groundtruth";
+    out_ << "\n";
+    if (summary.images_folder.empty()) return;
+    out_ << summary.images_folder << ": " << summary.linked << " images linked, " << summary.copied << " copied\n";
+  }
+
+  std::ostream& out_;
+  std::ostream& err_;
+  CLI::App app_{"Writes an EuRoC recording as an MRPT rawlog.", kName};
+  std::string input_, output_;
+  EurocToRawlogParams params_;
+  bool quiet_ = false;
+};
+
+}  // namespace
+
+int runEuroc2Rawlog(int argc, const char* const* argv, std::ostream& out, std::ostream& err) {
+  return programMain(kName, err, [&] { return Euroc2Rawlog(out, err).run(argc, argv); });
+}
+
+}  // namespace lintel
