@@ -9,16 +9,19 @@ namespace lintel {
 namespace {
 
 constexpr double kStep_px = 4;             ///< between samples along the line
+constexpr double kMaxSteps = 50;           ///< on a long line they lie further apart
+constexpr float kWeak = 0.3f;              ///< of the line's usual gradient: less is another edge, or none
 constexpr float kMinGradient = 32 * 2.0f;  ///< 2 grey levels a pixel, in units of the derivative image
 constexpr double kInlier_px = 0.8;         ///< of a sample's edge from the fitted line
 constexpr double kMinSupport = 0.5;
-constexpr double kFloor_px = 0.15;  ///< systematic: blur, sampling, lens model
+constexpr double kFloor_px = 0.25;  ///< systematic: blur, sampling, lens model
 constexpr int kMaxReach = 8;        ///< profiles reach this far at most
 
 /// Edge candidates across the line at one place along it.
 struct Sample {
   double s = 0;                    ///< along the line, from its start [px]
   std::array<double, 2> offset{};  ///< along the normal, the stronger one first [px]
+  std::array<float, 2> gradient{};
   int candidates = 0;
   double fitted = 0;  ///< the candidate that the fit uses
   bool inlier = false;
@@ -44,41 +47,51 @@ float gradientAlong(const cv::Mat& derivative, double x, double y, double nx, do
 
 /// Local maxima of the profile, the two strongest, by parabola.
 void findPeaks(const std::array<float, 2 * kMaxReach + 3>& profile, int reach, Sample& sample) {
-  std::array<float, 2> height{0, 0};
   for (int i = 1; i <= 2 * reach + 1; ++i) {
     const auto k = static_cast<std::size_t>(i);
     const float here = profile[k], before = profile[k - 1], after = profile[k + 1];
-    if (here < kMinGradient || here < before || here <= after) continue;
+    if (here < kMinGradient || here < before || here <= after || here <= sample.gradient[1]) continue;
     const double offset = i - 1 - reach + 0.5 * (before - after) / (before - 2 * here + after);
-    if (here > height[0]) {
-      height[1] = height[0];
+    const std::size_t place = here > sample.gradient[0] ? 0 : 1;
+    if (place == 0) {
+      sample.gradient[1] = sample.gradient[0];
       sample.offset[1] = sample.offset[0];
-      height[0] = here;
-      sample.offset[0] = offset;
-      sample.candidates = std::min(sample.candidates + 1, 2);
-    } else if (here > height[1]) {
-      height[1] = here;
-      sample.offset[1] = offset;
-      sample.candidates = 2;
     }
+    sample.gradient[place] = here;
+    sample.offset[place] = offset;
   }
-  if (sample.candidates == 2 && height[1] < 0.4f * height[0]) sample.candidates = 1;
+  sample.candidates = (sample.gradient[0] > 0) + (sample.gradient[1] > 0.4f * sample.gradient[0]);
+}
+
+/// Takes away candidates much weaker than the line's own edge: past a corner there is often a faint one.
+void dropWeak(std::vector<Sample>& samples, double length) {
+  std::vector<float> gradients;
+  for (const Sample& sample : samples)
+    if (sample.candidates > 0 && sample.s > 0 && sample.s < length) gradients.push_back(sample.gradient[0]);
+  if (gradients.empty()) return;
+  const auto middle = gradients.begin() + static_cast<std::ptrdiff_t>(gradients.size() / 2);
+  std::nth_element(gradients.begin(), middle, gradients.end());
+  for (Sample& sample : samples)
+    while (sample.candidates > 0 && sample.gradient[static_cast<std::size_t>(sample.candidates) - 1] < kWeak * *middle)
+      --sample.candidates;
 }
 
 std::vector<Sample> sampleProfiles(const LineCamera& camera, const cv::Mat& derivative, const ImageLine& line,
                                    int reach, double grow_px) {
   std::vector<Sample> samples;
   const Eigen::Vector2d d = line.direction(), n = line.normal();
-  const int grow_steps = static_cast<int>(grow_px / kStep_px);
-  const int steps = static_cast<int>(line.length() / kStep_px);
-  const double first = 0.5 * (line.length() - steps * kStep_px);
+  const double step_px = std::max(kStep_px, line.length() / kMaxSteps);
+  const int grow_steps = static_cast<int>(grow_px / step_px);
+  const int steps = static_cast<int>(line.length() / step_px);
+  const double first = 0.5 * (line.length() - steps * step_px);
   std::array<float, 2 * kMaxReach + 3> profile{};
   for (int i = -grow_steps; i <= steps + grow_steps; ++i) {
     Sample sample;
-    sample.s = first + i * kStep_px;
+    sample.s = first + i * step_px;
     const Eigen::Vector2d u = line.start + sample.s * d;
-    if (!camera.sees(u, reach + 3)) continue;
+    if (!camera.mayBeSeen(u)) continue;
     const Eigen::Vector2d px = camera.toImage(u), step = camera.imageJacobian(u) * n;
+    if (!camera.camera().contains(px, reach + 3)) continue;
     const double scale = 1.0 / step.norm();
     for (int k = -reach - 1; k <= reach + 1; ++k)
       profile[static_cast<std::size_t>(k + reach + 1)] =
@@ -86,6 +99,7 @@ std::vector<Sample> sampleProfiles(const LineCamera& camera, const cv::Mat& deri
     findPeaks(profile, reach, sample);
     samples.push_back(sample);
   }
+  dropWeak(samples, line.length());
   return samples;
 }
 
@@ -104,22 +118,33 @@ double nearest(const Sample& sample, const Fit& fit, double& offset) {
 
 /// Votes over shifts and tilts around the prediction; among equals the nearer to it wins.
 Fit vote(const std::vector<Sample>& samples, double length, double search_px) {
+  constexpr double kBin_px = 0.5;
+  const int bins = 2 * static_cast<int>(std::ceil(search_px / kBin_px)) + 1;
   Fit best;
   double best_score = -1;
-  for (const double tilt : {0.0, -1.5, 1.5, -3.0, 3.0})
-    for (double shift = -search_px; shift <= search_px; shift += 0.5) {
-      const Fit fit{shift - 0.5 * tilt, tilt / length};
-      double score = 0, offset = 0;
-      for (const Sample& sample : samples) {
-        const double r = std::abs(nearest(sample, fit, offset));
-        if (r < 1.0) score += 1.0 - 0.5 * r;
+  std::vector<double> votes;
+  for (const double tilt : {0.0, -1.5, 1.5, -3.0, 3.0}) {
+    votes.assign(static_cast<std::size_t>(bins) + 2, 0.0);  // one more at both ends spares the checks
+    for (const Sample& sample : samples)
+      for (int c = 0; c < sample.candidates; ++c) {
+        const double shift = sample.offset[static_cast<std::size_t>(c)] - tilt * (sample.s / length - 0.5);
+        const int bin = static_cast<int>(std::lround(shift / kBin_px)) + bins / 2;
+        if (bin < 0 || bin >= bins) continue;
+        const auto k = static_cast<std::size_t>(bin);
+        votes[k] += 0.5;
+        votes[k + 1] += 1.0;
+        votes[k + 2] += 0.5;
       }
-      score *= 1.0 - 0.25 * (std::abs(shift) + 0.5 * std::abs(tilt)) / (search_px + 1.5);
+    for (int bin = 0; bin < bins; ++bin) {
+      const double shift = kBin_px * (bin - bins / 2);
+      const double score = votes[static_cast<std::size_t>(bin) + 1] *
+                           (1.0 - 0.25 * (std::abs(shift) + 0.5 * std::abs(tilt)) / (search_px + 1.5));
       if (score > best_score) {
         best_score = score;
-        best = fit;
+        best = {shift - 0.5 * tilt, tilt / length};
       }
     }
+  }
   return best;
 }
 

@@ -38,21 +38,25 @@ void FlowLineTracker::process(const ImagePyramid& pyramid, const GyroPrediction&
   StageTimer timer(statistics, "lines_refine");
   refine(pyramid, statistics.lines);
   if (detect) {
-    addNew(pyramid, fresh, statistics.lines);
+    addNew(pyramid, fresh);
     dropDuplicates(statistics.lines);
   }
-  publish();
+  publish(statistics.lines);
 }
 
 void FlowLineTracker::end(const Track& track, std::int64_t& reason, LineStatistics& statistics) const {
+  if (track.id == 0) {
+    ++statistics.lost_unconfirmed;
+    return;
+  }
   ++reason;
   statistics.lifetimes.add(track.length);
 }
 
 void FlowLineTracker::predict(const ImagePyramid& pyramid, const GyroPrediction& gyro,
                               const std::vector<PointFlow>& points, LineStatistics& statistics) {
-  std::vector<ImageLine> lines;
-  for (const Track& track : tracks_) lines.push_back(track.line);
+  std::vector<CarriedLine> lines;
+  for (const Track& track : tracks_) lines.push_back({track.line, track.motion});
   const auto predicted = flow_.predict(lines, pyramid, gyro, points);
   std::vector<Track> kept;
   for (std::size_t i = 0; i < tracks_.size(); ++i) {
@@ -62,10 +66,10 @@ void FlowLineTracker::predict(const ImagePyramid& pyramid, const GyroPrediction&
       continue;
     }
     track.line = predicted[i]->line;
+    track.turned = predicted[i]->turned;
     track.by_flow = predicted[i]->by_flow;
     track.detected = false;
     if (!track.by_flow) ++statistics.flow_failed;
-    ++track.length;
     ++track.undetected;
     kept.push_back(track);
   }
@@ -80,7 +84,9 @@ std::vector<ImageLine> FlowLineTracker::mergeDetections(const ImagePyramid& pyra
   for (std::size_t i = 0; i < tracks_.size(); ++i) {
     tracks_[i].line = merged.lines[i];
     tracks_[i].detected = merged.detections[i] > 0;
-    if (tracks_[i].detected) tracks_[i].undetected = 0;
+    if (!tracks_[i].detected) continue;
+    tracks_[i].undetected = 0;
+    ++tracks_[i].sightings;
   }
   statistics.lines.detections += static_cast<std::int64_t>(detected.size());
   statistics.lines.merged += static_cast<std::int64_t>(detected.size() - merged.fresh.size());
@@ -108,9 +114,8 @@ void FlowLineTracker::refine(const ImagePyramid& pyramid, LineStatistics& statis
       continue;
     }
     track.line = *clipped;
+    track.motion = normalMotion(track.turned, track.line);
     track.sigma_px = refined->sigma_px;
-    ++statistics.tracked;
-    statistics.tracked_detected += track.detected;
     kept.push_back(track);
   }
   tracks_ = std::move(kept);
@@ -130,8 +135,7 @@ void FlowLineTracker::dropDuplicates(LineStatistics& statistics) {
   tracks_ = std::move(kept);
 }
 
-void FlowLineTracker::addNew(const ImagePyramid& pyramid, const std::vector<ImageLine>& fresh,
-                             LineStatistics& statistics) {
+void FlowLineTracker::addNew(const ImagePyramid& pyramid, const std::vector<ImageLine>& fresh) {
   for (const ImageLine& candidate : fresh) {  // longest first
     if (static_cast<int>(tracks_.size()) >= params_.max_lines) return;
     if (candidate.length() < params_.min_length_px) continue;
@@ -143,19 +147,29 @@ void FlowLineTracker::addNew(const ImagePyramid& pyramid, const std::vector<Imag
                     [&](const Track& track) { return merger_.duplicates(track.line, *clipped); }))
       continue;
     Track track;
-    track.id = next_id_++;
     track.line = *clipped;
     track.sigma_px = refined->sigma_px;
     tracks_.push_back(track);
-    ++statistics.created;
   }
 }
 
-void FlowLineTracker::publish() {
+void FlowLineTracker::publish(LineStatistics& statistics) {
   observations_.clear();
-  for (const Track& track : tracks_)
+  for (Track& track : tracks_) {
+    if (track.id == 0) {
+      if (track.sightings < params_.sightings_before_use) continue;
+      track.id = next_id_++;
+      ++statistics.created;
+    } else {
+      ++statistics.tracked;
+      statistics.tracked_detected += track.detected;
+    }
+    ++track.length;
     observations_.push_back(
         lineObservation(camera_, track.id, track.line, track.sigma_px, track.length, track.detected));
+  }
+  std::sort(observations_.begin(), observations_.end(),
+            [](const LineObservation& a, const LineObservation& b) { return a.id < b.id; });
 }
 
 }  // namespace lintel

@@ -22,10 +22,13 @@ class FlowLineTracker : public LineTracker {
 
  private:
   struct Track {
-    TrackId id = 0;
+    TrackId id = 0;  ///< 0: not published yet
     ImageLine line;
+    ImageLine turned;                       ///< its last place, turned into this frame
+    std::optional<Eigen::Vector2d> motion;  ///< of its ends beyond the rotation, see CarriedLine
     double sigma_px = 1;
-    int length = 1;
+    int length = 0;      ///< frames in which it was published
+    int sightings = 1;   ///< frames in which the detector saw it
     int undetected = 0;  ///< frames since the detector last saw it
     bool by_flow = true;
     bool detected = true;
@@ -36,8 +39,8 @@ class FlowLineTracker : public LineTracker {
   std::vector<ImageLine> mergeDetections(const ImagePyramid& pyramid, FrontEndStatistics& statistics);
   void refine(const ImagePyramid& pyramid, LineStatistics& statistics);
   void dropDuplicates(LineStatistics& statistics);
-  void addNew(const ImagePyramid& pyramid, const std::vector<ImageLine>& fresh, LineStatistics& statistics);
-  void publish();
+  void addNew(const ImagePyramid& pyramid, const std::vector<ImageLine>& fresh);
+  void publish(LineStatistics& statistics);
   void end(const Track& track, std::int64_t& reason, LineStatistics& statistics) const;
 
   LineTrackerParams params_;
@@ -46,7 +49,7 @@ class FlowLineTracker : public LineTracker {
   LineFlow flow_;
   LineMerger merger_;
   EdgeRefiner refiner_;
-  std::vector<Track> tracks_;  ///< ascending id
+  std::vector<Track> tracks_;  ///< by age: ascending id, then those without one
   std::vector<LineObservation> observations_;
   TrackId next_id_ = 1;
   int frames_since_detection_ = 0;

@@ -20,7 +20,7 @@ Eigen::Matrix2d LineCamera::imageJacobian(const Eigen::Vector2d& u) const {
 }
 
 bool LineCamera::sees(const Eigen::Vector2d& u, double border_px) const {
-  return u.norm() <= max_radius_ && camera_.contains(toImage(u), border_px);
+  return mayBeSeen(u) && camera_.contains(toImage(u), border_px);
 }
 
 std::optional<ImageLine> LineCamera::clip(const ImageLine& line, double border_px) const {

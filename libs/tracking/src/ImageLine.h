@@ -36,7 +36,9 @@ class LineCamera {
   Eigen::Vector2d toImage(const Eigen::Vector2d& u) const { return camera_.toPixel(u / focal_); }
   /// d image pixel / d undistorted pixel.
   Eigen::Matrix2d imageJacobian(const Eigen::Vector2d& u) const;
-  /// Seen in the image, at least `border_px` from its edge. Points so far out that the lens model folds back are not.
+  /// Not so far out that the lens model folds back into the image.
+  bool mayBeSeen(const Eigen::Vector2d& u) const { return u.squaredNorm() <= max_radius_ * max_radius_; }
+  /// Seen in the image, at least `border_px` from its edge.
   bool sees(const Eigen::Vector2d& u, double border_px) const;
   /// The part of `line` that the image sees; empty when there is none.
   std::optional<ImageLine> clip(const ImageLine& line, double border_px) const;

@@ -57,27 +57,77 @@ cv::Point2f residualNear(const cv::Point2f& px, const std::vector<PointFlow>& po
   return weights > 0 ? sum * (1.0f / weights) : sum;
 }
 
-LineFlow::Samples LineFlow::sample(const std::vector<ImageLine>& lines, const GyroPrediction& gyro,
+Eigen::Vector2d normalMotion(const ImageLine& turned, const ImageLine& line) {
+  const Eigen::Vector2d n = turned.normal(), m = line.normal();
+  const double along = std::max(n.dot(m), 0.1);
+  return {m.dot(line.start - turned.start) / along, m.dot(line.start - turned.end) / along};
+}
+
+ImageLine LineFlow::turnedLine(const ImageLine& line, const GyroPrediction& gyro) const {
+  // Ends may lie outside the image, where the lens model folds back: they stay in undistorted pixels.
+  const auto turned = [&](const Eigen::Vector2d& u) -> Eigen::Vector2d {
+    const Eigen::Vector3d ray = gyro.R_c1_c0() * (u / camera_.focal()).homogeneous();
+    return camera_.focal() * ray.head<2>() / std::max(ray.z(), 0.1);
+  };
+  return {turned(line.start), turned(line.end)};
+}
+
+LineFlow::Samples LineFlow::sample(const std::vector<CarriedLine>& lines, const GyroPrediction& gyro,
                                    const std::vector<PointFlow>& points) const {
   Samples samples;
-  for (const ImageLine& line : lines) {
+  for (const CarriedLine& carried : lines) {
     samples.first.push_back(samples.from.size());
+    const ImageLine turned = turnedLine(carried.line, gyro);
+    const auto turnedAt = [&](double share) {
+      return turnedPixel(camera_.camera(), gyro.R_c1_c0(), carried.line.at(share) / camera_.focal());
+    };
+    Eigen::Vector2d at_start = toEigen(residualNear(turnedAt(0.1), points));
+    Eigen::Vector2d at_end = toEigen(residualNear(turnedAt(0.9), points));
+    if (carried.motion) {  // across the line its own motion is known better than that of the points nearby
+      const Eigen::Vector2d n = turned.normal();
+      at_start += n * (carried.motion->x() - n.dot(at_start));
+      at_end += n * (carried.motion->y() - n.dot(at_end));
+    }
+    samples.turned.push_back(turned);
+    samples.guessed.push_back({turned.start + at_start, turned.end + at_end});
     const int count =
-        std::clamp(static_cast<int>(line.length() / kSpacing_px), params_.min_samples, params_.max_samples);
+        std::clamp(static_cast<int>(carried.line.length() / kSpacing_px), params_.min_samples, params_.max_samples);
     for (int i = 0; i < count; ++i) {
-      const Eigen::Vector2d u = line.at((i + 0.5) / count);
-      const Eigen::Vector2d px = camera_.toImage(u);
-      const cv::Point2f turned = turnedPixel(camera_.camera(), gyro.R_c1_c0(), u / camera_.focal());
-      samples.from.emplace_back(static_cast<float>(px.x()), static_cast<float>(px.y()));
-      samples.residual.push_back(residualNear(turned, points));
-      samples.guess.push_back(turned + samples.residual.back());
+      const double share = (i + 0.5) / count;
+      const Eigen::Vector2d from = camera_.toImage(carried.line.at(share));
+      const Eigen::Vector2d motion = (1 - share) * at_start + share * at_end;
+      samples.from.emplace_back(static_cast<float>(from.x()), static_cast<float>(from.y()));
+      samples.guess.push_back(turnedAt(share) +
+                              cv::Point2f(static_cast<float>(motion.x()), static_cast<float>(motion.y())));
     }
   }
   samples.first.push_back(samples.from.size());
   return samples;
 }
 
-std::vector<std::optional<PredictedLine>> LineFlow::predict(const std::vector<ImageLine>& lines,
+PredictedLine LineFlow::fit(const Samples& samples, std::size_t index, bool has_motion,
+                            const std::vector<cv::Point2f>& to, const std::vector<unsigned char>& found) const {
+  std::vector<Eigen::Vector2d> guessed_u, found_u;
+  for (std::size_t i = samples.first[index]; i < samples.first[index + 1]; ++i) {
+    const Eigen::Vector2d px = toEigen(to[i]);
+    if (!found[i] || !camera_.camera().contains(px, 1) || cv::norm(to[i] - samples.guess[i]) > kMaxSurprise_px)
+      continue;
+    guessed_u.push_back(camera_.fromImage(toEigen(samples.guess[i])));
+    found_u.push_back(camera_.fromImage(px));
+  }
+  const ImageLine& guess = samples.guessed[index];
+  PredictedLine result{guess, samples.turned[index], false};
+  const auto robust = fitRobustLine(found_u, kFitTolerance_px);
+  if (!robust) return result;
+  const ImageLine carried = carryEnds(guess, *robust, guessed_u, found_u);
+  // Among parallel stripes flow may lock onto a neighbour. A line with a history does not jump.
+  if (has_motion && normalMotion(guess, carried).cwiseAbs().maxCoeff() > params_.max_jump_px) return result;
+  result.line = carried;
+  result.by_flow = true;
+  return result;
+}
+
+std::vector<std::optional<PredictedLine>> LineFlow::predict(const std::vector<CarriedLine>& lines,
                                                             const ImagePyramid& pyramid, const GyroPrediction& gyro,
                                                             const std::vector<PointFlow>& points) const {
   std::vector<std::optional<PredictedLine>> predicted(lines.size());
@@ -90,33 +140,13 @@ std::vector<std::optional<PredictedLine>> LineFlow::predict(const std::vector<Im
                            cv::Size(params_.window_px, params_.window_px),
                            std::min(params_.flow_levels, pyramid.levels()) - 1, criteria, cv::OPTFLOW_USE_INITIAL_FLOW,
                            kMinEigenvalue);
-
-  for (std::size_t l = 0; l < lines.size(); ++l) {
-    // Ends may lie outside the image, where the lens model folds back: they stay in undistorted pixels.
-    const auto turnedEnd = [&](const Eigen::Vector2d& u) -> Eigen::Vector2d {
-      const Eigen::Vector3d ray = gyro.R_c1_c0() * (u / camera_.focal()).homogeneous();
-      return camera_.focal() * ray.head<2>() / std::max(ray.z(), 0.1);
-    };
-    const auto guessEnd = [&](const Eigen::Vector2d& u, std::size_t nearest) -> Eigen::Vector2d {
-      return turnedEnd(u) + toEigen(samples.residual[nearest]);
-    };
-    const ImageLine guess{guessEnd(lines[l].start, samples.first[l]), guessEnd(lines[l].end, samples.first[l + 1] - 1)};
-    std::vector<Eigen::Vector2d> guessed_u, found_u;
-    for (std::size_t i = samples.first[l]; i < samples.first[l + 1]; ++i) {
-      const Eigen::Vector2d px = toEigen(to[i]);
-      if (!found[i] || !camera_.camera().contains(px, 1) || cv::norm(to[i] - samples.guess[i]) > kMaxSurprise_px)
-        continue;
-      guessed_u.push_back(camera_.fromImage(toEigen(samples.guess[i])));
-      found_u.push_back(camera_.fromImage(px));
-    }
-    PredictedLine result{guess, false};
-    if (const auto fit = fitRobustLine(found_u, kFitTolerance_px)) {
-      result.line = carryEnds(guess, *fit, guessed_u, found_u);
-      result.by_flow = true;
-    }
+  for (std::size_t i = 0; i < lines.size(); ++i) {
+    PredictedLine result = fit(samples, i, lines[i].motion.has_value(), to, found);
     if (!result.line.start.allFinite() || !result.line.end.allFinite()) continue;
-    if (const auto clipped = camera_.clip(result.line, params_.border_px))
-      predicted[l] = PredictedLine{*clipped, result.by_flow};
+    const auto clipped = camera_.clip(result.line, params_.border_px);
+    if (!clipped) continue;
+    result.line = *clipped;
+    predicted[i] = result;
   }
   return predicted;
 }

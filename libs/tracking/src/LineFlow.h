@@ -13,9 +13,17 @@
 
 namespace lintel {
 
+/// A line of the frame before. `motion_*`: how far its ends moved along its normal in the last step, beyond what the
+/// camera's rotation explains [px]; empty for a new line. Bodies have inertia: the next step is much like the last.
+struct CarriedLine {
+  ImageLine line;
+  std::optional<Eigen::Vector2d> motion;  ///< at start, at end
+};
+
 /// A line carried into the current frame.
 struct PredictedLine {
   ImageLine line;
+  ImageLine turned;      ///< where the line would be had the camera only turned
   bool by_flow = false;  ///< false: optical flow failed; the gyro and the points nearby say where it should be
 };
 
@@ -26,22 +34,29 @@ class LineFlow {
   LineFlow(const LineCamera& camera, const LineTrackerParams& params) : camera_(camera), params_(params) {}
 
   /// One result per line; empty when it left the image.
-  std::vector<std::optional<PredictedLine>> predict(const std::vector<ImageLine>& lines, const ImagePyramid& pyramid,
+  std::vector<std::optional<PredictedLine>> predict(const std::vector<CarriedLine>& lines, const ImagePyramid& pyramid,
                                                     const GyroPrediction& gyro,
                                                     const std::vector<PointFlow>& points) const;
 
  private:
   struct Samples {
-    std::vector<std::size_t> first;        ///< of each line; one more at the end
-    std::vector<cv::Point2f> from, guess;  ///< image pixels
-    std::vector<cv::Point2f> residual;     ///< expected motion beyond the rotation
+    std::vector<std::size_t> first;          ///< of each line; one more at the end
+    std::vector<cv::Point2f> from, guess;    ///< image pixels
+    std::vector<ImageLine> turned, guessed;  ///< per line: by the rotation alone, and with the expected motion
   };
-  Samples sample(const std::vector<ImageLine>& lines, const GyroPrediction& gyro,
+  Samples sample(const std::vector<CarriedLine>& lines, const GyroPrediction& gyro,
                  const std::vector<PointFlow>& points) const;
+
+  PredictedLine fit(const Samples& samples, std::size_t index, bool has_motion, const std::vector<cv::Point2f>& to,
+                    const std::vector<unsigned char>& found) const;
+  ImageLine turnedLine(const ImageLine& line, const GyroPrediction& gyro) const;
 
   const LineCamera& camera_;
   LineTrackerParams params_;
 };
+
+/// Motion along the normal of `turned` that brings its ends onto the infinite `line` (start, end) [px].
+Eigen::Vector2d normalMotion(const ImageLine& turned, const ImageLine& line);
 
 /// Mean motion of the tracked points near `px` beyond the rotation, nearer ones weighing more; zero without any.
 cv::Point2f residualNear(const cv::Point2f& px, const std::vector<PointFlow>& points);

@@ -15,16 +15,25 @@ struct Pair {
   double score;
 };
 
-void extend(ImageLine& line, const ImageLine& piece) {
-  const Eigen::Vector2d d = line.direction();
-  if (d.dot(piece.start - line.start) < 0) line.start = piece.start;
-  if (d.dot(piece.end - line.end) > 0) line.end = piece.end;
+/// The longer one gives the line, both give the ends.
+ImageLine united(const ImageLine& a, const ImageLine& b) {
+  const bool a_longer = a.length() >= b.length();
+  ImageLine line = a_longer ? a : b;
+  const ImageLine& piece = a_longer ? b : a;
+  const Eigen::Vector2d d = line.direction(), origin = line.start;
+  const double length = line.length();
+  const double first = d.dot(piece.start - origin), last = d.dot(piece.end - origin);
+  if (first < 0) line.start = origin + first * d;
+  if (last > length) line.end = origin + last * d;
+  return line;
 }
 
 }  // namespace
 
 double LineMerger::score(const ImageLine& predicted, const ImageLine& detected) const {
-  const LineRelation relation = relate(predicted, detected);
+  // A short line's direction says little far away: the longer one is the ruler.
+  const bool longer = predicted.length() >= detected.length();
+  const LineRelation relation = longer ? relate(predicted, detected) : relate(detected, predicted);
   const double shorter = std::min(predicted.length(), detected.length());
   if (relation.angle_rad > params_.merge_angle_rad || relation.distance_px > params_.merge_distance_px ||
       relation.overlap_px < -kGap_px || shorter <= 0)
@@ -48,7 +57,7 @@ MergedLines LineMerger::merge(const std::vector<ImageLine>& predicted, const std
     if (taken[pair.detected]) continue;
     taken[pair.detected] = 1;
     ++merged.detections[pair.predicted];
-    extend(merged.lines[pair.predicted], detected[pair.detected]);
+    merged.lines[pair.predicted] = united(merged.lines[pair.predicted], detected[pair.detected]);
   }
   for (std::size_t d = 0; d < detected.size(); ++d)
     if (!taken[d]) merged.fresh.push_back(detected[d]);

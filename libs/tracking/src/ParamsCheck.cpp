@@ -24,6 +24,7 @@ void checkLines(const LineTrackerParams& p) {
   require("lines.gradient_threshold", p.gradient_threshold, 1, 255);
   require("lines.detect_every_n", p.detect_every_n, 1, 1000);
   require("lines.max_lines", p.max_lines, 1, 10000);
+  require("lines.sightings_before_use", p.sightings_before_use, 1, 1000);
   require("lines.min_length_px", p.min_length_px, 20, 10000);
   require("lines.keep_length_px", p.keep_length_px, 16, p.min_length_px);
   require("lines.window_px", p.window_px, 5, 51);
@@ -31,6 +32,7 @@ void checkLines(const LineTrackerParams& p) {
   require("lines.max_iterations", p.max_iterations, 1, 1000);
   require("lines.min_samples", p.min_samples, 3, 100);
   require("lines.max_samples", p.max_samples, p.min_samples, 100);
+  require("lines.max_jump_px", p.max_jump_px, 0.5, 1000);
   require("lines.refine_px", p.refine_px, 0.5, 8);
   require("lines.grow_px", p.grow_px, 0, 1000);
   require("lines.merge_angle_rad", p.merge_angle_rad, 0.001, 1);

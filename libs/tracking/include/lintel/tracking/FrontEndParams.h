@@ -56,17 +56,19 @@ struct LineTrackerParams {
   int gradient_threshold = 24;            ///< of edge_drawing: Sobel response an edge must have
   int detect_every_n = 2;                 ///< frames between detections; 2 = the estimator's rate at 20 Hz images
   int max_lines = 100;                    ///< lines held at once; older, then longer ones first
+  int sightings_before_use = 2;           ///< detections of a line before it gets an identity: chance lines stay out
   double min_length_px = 50;              ///< of a new line [Lim2021: 50 px]
   double keep_length_px = 30;             ///< a tracked line that gets shorter is lost
-  int window_px = 13;                     ///< side of the KLT patch of a sample on a line
+  int window_px = 9;                      ///< side of the KLT patch of a sample on a line
   int flow_levels = 3;                    ///< pyramid levels for the samples
-  int max_iterations = 10;                ///< of their KLT, per level
+  int max_iterations = 6;                 ///< of their KLT, per level
   int min_samples = 5;                    ///< on a short line
-  int max_samples = 10;                   ///< on a long line
-  double refine_px = 3;                   ///< how far from the prediction the edge is searched
-  double grow_px = 16;                    ///< how far a line may grow along its edge in one frame, at each end
-  double merge_angle_rad = 0.07;          ///< largest angle between a prediction and a detection of the same line
-  double merge_distance_px = 3;           ///< largest distance of the detection's ends from the predicted line
+  int max_samples = 6;                    ///< on a long line
+  double max_jump_px = 5;         ///< optical flow further than this from a line's steady motion is not believed
+  double refine_px = 3;           ///< how far from the prediction the edge is searched
+  double grow_px = 16;            ///< how far a line may grow along its edge in one frame, at each end
+  double merge_angle_rad = 0.07;  ///< largest angle between a prediction and a detection of the same line
+  double merge_distance_px = 3;   ///< largest distance of the detection's ends from the predicted line
   int max_frames_without_detection = 20;  ///< a line that only optical flow sees is dropped after this
   int border_px = 4;                      ///< lines end this far from the image border
   int descriptor_distance = 40;  ///< largest Hamming distance of LBD descriptors (of 256 bits), mode descriptor
@@ -79,6 +81,7 @@ struct LineTrackerParams {
     field("gradient_threshold", gradient_threshold);
     field("detect_every_n", detect_every_n);
     field("max_lines", max_lines);
+    field("sightings_before_use", sightings_before_use);
     field("min_length_px", min_length_px);
     field("keep_length_px", keep_length_px);
     field("window_px", window_px);
@@ -86,6 +89,7 @@ struct LineTrackerParams {
     field("max_iterations", max_iterations);
     field("min_samples", min_samples);
     field("max_samples", max_samples);
+    field("max_jump_px", max_jump_px);
     field("refine_px", refine_px);
     field("grow_px", grow_px);
     field("merge_angle_rad", merge_angle_rad);

@@ -50,6 +50,7 @@ struct LineStatistics {
   std::int64_t lost_edge = 0;         ///< no edge at the predicted place, or too short a part of it
   std::int64_t lost_duplicate = 0;    ///< became the same as an older line
   std::int64_t lost_undetected = 0;   ///< not seen by the detector for too long
+  std::int64_t lost_unconfirmed = 0;  ///< candidates that were gone before they got an identity
   std::int64_t lost_unmatched = 0;    ///< mode descriptor: no match
   TrackLifetimes lifetimes;           ///< in frames of the images' rate
 };

@@ -1,0 +1,202 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "lintel/tracking/FrontEnd.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <map>
+#include <opencv2/core/utility.hpp>
+#include <set>
+
+#include "TestImages.h"
+#include "lintel/geometry/Rotation.h"
+
+namespace lintel {
+namespace {
+
+using testing::Strip;
+constexpr std::int64_t kStep_ns = 50'000'000;
+
+/// Turns the camera at a constant rate (camera frame) before a scene and tracks it.
+std::vector<FrameTracks> trackTurning(const std::vector<testing::Scene>& scenes, const FrontEndParams& params,
+                                      const Eigen::Vector3d& rate_c, const Eigen::Vector3d& bias_b = {0, 0, 0}) {
+  const Rig rig = testing::testRig();
+  FrontEnd front_end(rig, params);
+  std::vector<FrameTracks> result;
+  for (std::size_t i = 0; i < scenes.size(); ++i) {
+    const auto t_ns = static_cast<std::int64_t>(i) * kStep_ns;
+    const Eigen::Quaterniond R_w_c = expRotation(rate_c * 0.05 * static_cast<double>(i));
+    const Frame frame = testing::renderScene(rig, scenes[i], t_ns, R_w_c.conjugate());
+    result.push_back(
+        front_end.process(frame, testing::constantRate(t_ns - kStep_ns, t_ns, rig.T_b_c.q * rate_c + bias_b)));
+  }
+  return result;
+}
+
+FrontEndParams pointsOnly() {
+  FrontEndParams params;
+  params.lines.enabled = false;
+  params.points.max_points = 60;
+  return params;
+}
+
+FrontEndParams linesAtOnce() {
+  FrontEndParams params;
+  params.lines.sightings_before_use = 1;
+  params.lines.detect_every_n = 1;
+  return params;
+}
+
+const Eigen::Vector3d kRate(0.25, -0.35, 0.5);
+
+TEST(FrontEnd, followsPointsThroughRotationWithABiasedGyro) {
+  const std::vector<testing::Scene> scenes(6, testing::blobs(3));
+  const auto tracks = trackTurning(scenes, pointsOnly(), kRate, {0.05, -0.05, 0.05});
+  const Eigen::Quaterniond R_c5_c0 = expRotation(kRate * 0.25).conjugate();
+  std::map<TrackId, Eigen::Vector2d> first;
+  for (const PointObservation& p : tracks.front().points) first[p.id] = p.normalised;
+  EXPECT_GT(first.size(), 50u);
+  std::vector<double> errors_px;
+  for (const PointObservation& p : tracks.back().points) {
+    if (!first.count(p.id)) continue;
+    EXPECT_EQ(p.track_length, 6);
+    const Eigen::Vector3d ray = R_c5_c0 * first[p.id].homogeneous();
+    errors_px.push_back((ray.head<2>() / ray.z() - p.normalised).norm() * 300);
+  }
+  ASSERT_GT(errors_px.size(), 40u);
+  std::sort(errors_px.begin(), errors_px.end());
+  EXPECT_LT(errors_px[errors_px.size() / 2], 0.5);
+  EXPECT_LT(errors_px.back(), 1.5);  // five steps of 13 px each
+}
+
+TEST(FrontEnd, spreadsPointsAndKeepsIdsAscending) {
+  const auto tracks = trackTurning(std::vector<testing::Scene>(4, testing::blobs(5)), pointsOnly(), kRate);
+  for (const FrameTracks& frame : tracks) {
+    std::set<int> cells;
+    for (std::size_t i = 0; i < frame.points.size(); ++i) {
+      if (i > 0) {
+        EXPECT_LT(frame.points[i - 1].id, frame.points[i].id);
+      }
+      for (std::size_t j = 0; j < i; ++j) EXPECT_GT((frame.points[i].px - frame.points[j].px).norm(), 12);
+      cells.insert(static_cast<int>(frame.points[i].px.x() / 120) + 4 * static_cast<int>(frame.points[i].px.y() / 107));
+    }
+    EXPECT_EQ(cells.size(), 12u);  // 4 x 3 cells of the image
+  }
+}
+
+TEST(FrontEnd, followsALineAndKeepsItsEnds) {
+  const Strip strip{{-0.35, -0.1}, {0.3, 0.12}, 0.03};
+  const auto tracks = trackTurning(std::vector<testing::Scene>(6, testing::strips({strip})), linesAtOnce(), kRate);
+  const Eigen::Quaterniond R_c5_c0 = expRotation(kRate * 0.25).conjugate();
+  ASSERT_EQ(tracks.front().lines.size(), 2u);  // both edges of the strip
+  ASSERT_EQ(tracks.back().lines.size(), 2u);
+  for (std::size_t i = 0; i < 2; ++i) {
+    const LineObservation &before = tracks.front().lines[i], &after = tracks.back().lines[i];
+    EXPECT_EQ(before.id, after.id);
+    EXPECT_EQ(after.track_length, 6);
+    const Eigen::Vector3d start = R_c5_c0 * before.start.homogeneous(), end = R_c5_c0 * before.end.homogeneous();
+    const Eigen::Vector3d seen = after.start.homogeneous().cross(after.end.homogeneous());
+    EXPECT_LT(std::abs(seen.dot(start / start.z())) / seen.head<2>().norm() * 300, 0.5);
+    EXPECT_LT(std::abs(seen.dot(end / end.z())) / seen.head<2>().norm() * 300, 0.5);
+    EXPECT_LT((start.head<2>() / start.z() - after.start).norm() * 300, 12);
+    EXPECT_LT((end.head<2>() / end.z() - after.end).norm() * 300, 12);
+  }
+}
+
+TEST(FrontEnd, aLineKeepsItsNameWhenSplitAndCut) {
+  const Strip strip{{-0.5, -0.1}, {0.5, 0.12}, 0.03};
+  const auto whole = testing::strips({strip});
+  const auto split = testing::strips({strip}, [](const Eigen::Vector2d& x) { return std::abs(x.x()) < 0.03; });
+  const auto cut = testing::strips({strip}, [](const Eigen::Vector2d& x) { return x.x() > 0.1; });
+  const auto tracks = trackTurning({whole, split, split, cut, cut, whole, whole, whole}, linesAtOnce(), {0.1, 0.1, 0});
+  std::set<TrackId> ids;
+  for (const FrameTracks& frame : tracks)
+    for (const LineObservation& line : frame.lines)
+      if ((line.end - line.start).normalized().cwiseAbs().x() > 0.9) ids.insert(line.id);
+  EXPECT_EQ(ids.size(), 2u);
+  const auto length = [](const LineObservation& line) { return (line.end - line.start).norm(); };
+  EXPECT_LT(length(tracks[4].lines.front()), 0.75);
+  EXPECT_GT(length(tracks[7].lines.front()), 0.9);  // grown back
+}
+
+TEST(FrontEnd, publishesALineOnlyWhenSeenTwice) {
+  FrontEndParams params = linesAtOnce();
+  params.lines.sightings_before_use = 2;
+  const Strip strip{{-0.35, -0.1}, {0.3, 0.12}, 0.03};
+  const auto tracks = trackTurning(std::vector<testing::Scene>(3, testing::strips({strip})), params, {0, 0, 0});
+  EXPECT_TRUE(tracks[0].lines.empty());
+  ASSERT_EQ(tracks[1].lines.size(), 2u);
+  EXPECT_EQ(tracks[1].lines[0].track_length, 1);
+}
+
+TEST(FrontEnd, descriptorModeMatchesLines) {
+  FrontEndParams params = linesAtOnce();
+  params.lines.mode = "descriptor";
+  const Strip strip{{-0.35, -0.1}, {0.3, 0.12}, 0.03}, other{{-0.2, 0.3}, {0.0, -0.3}, 0.05};
+  const auto tracks =
+      trackTurning(std::vector<testing::Scene>(3, testing::strips({strip, other})), params, {0.1, 0.1, 0});
+  std::set<TrackId> first, last;
+  for (const LineObservation& line : tracks.front().lines) first.insert(line.id);
+  for (const LineObservation& line : tracks.back().lines)
+    if (line.track_length == 3) last.insert(line.id);
+  EXPECT_GE(first.size(), 3u);
+  EXPECT_GE(last.size(), 3u);
+}
+
+bool same(const FrameTracks& a, const FrameTracks& b) {
+  if (a.points.size() != b.points.size() || a.lines.size() != b.lines.size()) return false;
+  for (std::size_t i = 0; i < a.points.size(); ++i)
+    if (a.points[i].id != b.points[i].id || a.points[i].px != b.points[i].px) return false;
+  for (std::size_t i = 0; i < a.lines.size(); ++i)
+    if (a.lines[i].id != b.lines[i].id || a.lines[i].start != b.lines[i].start || a.lines[i].end != b.lines[i].end)
+      return false;
+  return true;
+}
+
+TEST(FrontEnd, givesTheSameOnAnyNumberOfThreads) {
+  const int threads = cv::getNumThreads();
+  std::vector<std::vector<FrameTracks>> runs;
+  const auto blobs = testing::blobs(7);
+  const auto strip = testing::strips({{{-0.35, -0.1}, {0.3, 0.12}, 0.05}}, {}, 0, 1);
+  const testing::Scene scene = [&](const Eigen::Vector2d& x) { return strip(x) > 0 ? 240.0 : 0.5 * blobs(x); };
+  for (const int n : {1, 3}) {
+    cv::setNumThreads(n);
+    runs.push_back(trackTurning(std::vector<testing::Scene>(4, scene), linesAtOnce(), kRate));
+  }
+  cv::setNumThreads(threads);
+  for (std::size_t i = 0; i < runs[0].size(); ++i) EXPECT_TRUE(same(runs[0][i], runs[1][i])) << "frame " << i;
+  EXPECT_FALSE(runs[0].back().lines.empty());
+}
+
+TEST(FrontEnd, toleratesMissingGyro) {
+  const Rig rig = testing::testRig();
+  FrontEnd front_end(rig, pointsOnly());
+  for (int i = 0; i < 3; ++i) {
+    const Eigen::Quaterniond R_c_w = expRotation(kRate * 0.02 * i).conjugate();
+    front_end.process(testing::renderScene(rig, testing::blobs(3), i * kStep_ns, R_c_w), {});
+  }
+  EXPECT_EQ(front_end.statistics().frames_without_gyro, 2);
+  EXPECT_GT(front_end.statistics().points.tracked, 80);
+}
+
+TEST(FrontEnd, namesWhatIsWrong) {
+  FrontEndParams params;
+  params.lines.mode = "magic";
+  EXPECT_THROW(FrontEnd(testing::testRig(), params), std::invalid_argument);
+  params = {};
+  params.points.window_px = 0;
+  EXPECT_THROW(FrontEnd(testing::testRig(), params), std::invalid_argument);
+
+  const Rig rig = testing::testRig();
+  FrontEnd front_end(rig, {});
+  const Frame frame = testing::renderScene(rig, testing::blobs(1), 0);
+  front_end.process(frame, {});
+  EXPECT_THROW(front_end.process(frame, {}), std::invalid_argument);  // not later
+  Rig smaller = rig;
+  smaller.camera.width = 320;
+  EXPECT_THROW(front_end.process(testing::renderScene(smaller, testing::blobs(1), kStep_ns), {}),
+               std::invalid_argument);
+}
+
+}  // namespace
+}  // namespace lintel

@@ -1,0 +1,106 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <Eigen/Geometry>
+#include <cmath>
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <vector>
+
+#include "lintel/sensing/Frame.h"
+#include "lintel/sensing/Rig.h"
+
+namespace lintel::testing {
+
+/// EuRoC-like lens on a smaller image.
+inline Rig testRig() {
+  Rig rig;
+  rig.camera.width = 480;
+  rig.camera.height = 320;
+  rig.camera.fx = rig.camera.fy = 300;
+  rig.camera.cx = 240;
+  rig.camera.cy = 160;
+  rig.camera.k1 = -0.28;
+  rig.camera.k2 = 0.07;
+  rig.T_b_c.q = Eigen::Quaterniond(0, std::sqrt(0.5), std::sqrt(0.5), 0);  // axes swapped: a mix-up shows
+  return rig;
+}
+
+/// Grey value (0 to 255) of a scene at normalised coordinates.
+using Scene = std::function<double(const Eigen::Vector2d&)>;
+
+/// What the camera sees of a scene at infinity after turning by R_c_w: 2x2 samples a pixel.
+inline Frame renderScene(const Rig& rig, const Scene& scene, std::int64_t t_ns,
+                         const Eigen::Quaterniond& R_c_w = Eigen::Quaterniond::Identity()) {
+  auto image = std::make_shared<GrayImage>();
+  image->width = rig.camera.width;
+  image->height = rig.camera.height;
+  const Eigen::Quaterniond R_w_c = R_c_w.conjugate();
+  for (int y = 0; y < image->height; ++y)
+    for (int x = 0; x < image->width; ++x) {
+      double sum = 0;
+      for (const double dy : {-0.25, 0.25})
+        for (const double dx : {-0.25, 0.25}) {
+          const Eigen::Vector3d ray = R_w_c * rig.camera.normalise({x + dx, y + dy}).homogeneous();
+          sum += scene(ray.head<2>() / ray.z());
+        }
+      image->pixels.push_back(static_cast<std::uint8_t>(std::lround(std::min(255.0, std::max(0.0, sum / 4)))));
+    }
+  return {t_ns, image};
+}
+
+/// Smooth random blobs: corners everywhere, the same for the same seed.
+inline Scene blobs(unsigned seed) {
+  return [seed](const Eigen::Vector2d& x) {
+    const auto hash = [&](int i, int j) {
+      std::uint32_t h =
+          static_cast<std::uint32_t>(i) * 73856093u ^ static_cast<std::uint32_t>(j) * 19349663u ^ seed * 83492791u;
+      h ^= h >> 13;
+      h *= 0x5bd1e995u;
+      h ^= h >> 15;
+      return (h & 0xffff) / 65535.0;
+    };
+    const double u = x.x() * 25, v = x.y() * 25;
+    const int i = static_cast<int>(std::floor(u)), j = static_cast<int>(std::floor(v));
+    const auto ease = [](double s) { return s * s * (3 - 2 * s); };
+    const double a = ease(u - i), b = ease(v - j);
+    return 30 + 200 * ((1 - a) * (1 - b) * hash(i, j) + a * (1 - b) * hash(i + 1, j) + (1 - a) * b * hash(i, j + 1) +
+                       a * b * hash(i + 1, j + 1));
+  };
+}
+
+/// A bright strip on a dark ground, between two points (normalised), `half_width` wide to each side.
+struct Strip {
+  Eigen::Vector2d start, end;
+  double half_width;
+};
+
+/// Strips of grey `bright` on `dark`; `hidden` marks places that show the ground.
+inline Scene strips(std::vector<Strip> list, std::function<bool(const Eigen::Vector2d&)> hidden = {}, double dark = 60,
+                    double bright = 180) {
+  return [=](const Eigen::Vector2d& x) {
+    if (hidden && hidden(x)) return dark;
+    for (const Strip& strip : list) {
+      const Eigen::Vector2d d = (strip.end - strip.start).normalized();
+      const double along = d.dot(x - strip.start),
+                   across = std::abs(d.x() * (x - strip.start).y() - d.y() * (x - strip.start).x());
+      if (along > 0 && along < (strip.end - strip.start).norm() && across < strip.half_width) return bright;
+    }
+    return dark;
+  };
+}
+
+/// Gyro samples of a constant rate (body frame) from t0 to t1, both included.
+inline ImuBatch constantRate(std::int64_t t0_ns, std::int64_t t1_ns, const Eigen::Vector3d& rate_b) {
+  ImuBatch batch;
+  for (int i = 0; i <= 10; ++i) {
+    ImuSample sample;
+    sample.t_ns = t0_ns + (t1_ns - t0_ns) * i / 10;
+    sample.gyro = rate_b;
+    batch.push_back(sample);
+  }
+  return batch;
+}
+
+}  // namespace lintel::testing
