@@ -31,10 +31,15 @@ struct Format {
 const std::vector<Format>& formats() {
   static const std::vector<Format> all{
       {"glb", glbFiles, LineStyle::kLines, kAll, "f3d FILE, Blender (import glTF 2.0) or a browser's glTF viewer"},
+      {"gltf", gltfFiles, LineStyle::kLines, kAll, "f3d FILE, Blender (import glTF 2.0) or a browser's glTF viewer"},
       {"obj", objFiles, LineStyle::kTubes, kOnlyLines, "meshlab FILE or Blender (import Wavefront)"},
       {"ply", plyFiles, LineStyle::kTubes, kOnlyLines, "meshlab FILE or CloudCompare"},
       {"3Dscene", sceneFiles, LineStyle::kLines, kAll, "SceneViewer3D FILE"},
+      {"dae", daeFiles, LineStyle::kLines, kNoPoints, "a Collada reader, e.g. f3d FILE"},
+      {"x3d", x3dFiles, LineStyle::kLines, kNoPoints, "an X3D viewer or Blender (import X3D)"},
       {"csv", csvFiles, LineStyle::kLines, kOnlyLines, "any table program"},
+      {"json", jsonFiles, LineStyle::kLines, kAll, "any program that reads JSON"},
+      {"dxf", dxfFiles, LineStyle::kLines, kNoPoints, "LibreCAD, FreeCAD, AutoCAD or CloudCompare"},
       {"png", pngFiles, LineStyle::kLines, kNoPoints, "any picture viewer"},
   };
   return all;

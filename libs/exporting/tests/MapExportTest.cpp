@@ -7,6 +7,9 @@
 #include <chrono>
 #include <cmath>
 #include <limits>
+#include <map>
+#include <nlohmann/json.hpp>
+#include <sstream>
 
 #include "Files.h"
 #include "Reimport.h"
@@ -98,6 +101,56 @@ TEST_F(MapExport, GlbGivesTheSameSegmentsBackUnderNamedNodes) {
   params.style = LineStyle::kTubes;
   exportMap(kRoom, in("tubes.glb"), params);
   EXPECT_EQ(reimport(in("tubes.glb")).triangles, 12 * kRoom.lines.size());
+}
+
+TEST_F(MapExport, GltfDaeAndX3dGiveTheSameSegmentsBack) {
+  ExportParams params;
+  params.layers = {MapLayer::kLines};
+  for (const char* name : {"map.gltf", "map.dae", "map.x3d"}) {
+    exportMap(kRoom, in(name), params);
+    const Reimported found = reimport(in(name));
+    ASSERT_EQ(found.error, "") << name;
+    SCOPED_TRACE(name);
+    expectSameSegments(found.segments, true);
+  }
+}
+
+TEST_F(MapExport, DxfHoldsTheLinesOnTheirLayers) {
+  exportMap(kRoom, in("map.dxf"));
+  std::istringstream text(content(in("map.dxf")));
+  std::map<int, std::string> entity;
+  std::vector<Segment3> lines;
+  std::string code, value;
+  while (std::getline(text, code) && std::getline(text, value)) {
+    if (std::stoi(code) == 0) {
+      if (entity[0] == "LINE" && entity[8].rfind("LINES_", 0) == 0) {
+        const auto at = [&](int c) { return std::stod(entity.at(c)); };
+        lines.push_back({{at(10), at(20), at(30)}, {at(11), at(21), at(31)}});
+      }
+      entity.clear();
+    }
+    entity[std::stoi(code)] = value;
+  }
+  EXPECT_EQ(value, "EOF");
+  expectSameSegments(lines, false);
+}
+
+TEST_F(MapExport, JsonHoldsTheFullData) {
+  LineMap map = kRoom;
+  map.configuration = "a: \"b\\c\"\n\t\x01";
+  map.lines[5].sigma_distance_m = std::nan("");
+  exportMap(map, in("map.json"));
+  const auto json = nlohmann::json::parse(content(in("map.json")));
+  EXPECT_EQ(json["configuration"], map.configuration);
+  ASSERT_EQ(json["lines"].size(), map.lines.size());
+  EXPECT_TRUE(json["lines"][5]["sigma_distance_m"].is_null());
+  EXPECT_EQ(json["lines"][30]["start"][0].get<double>(), map.lines[30].segment_w.start.x());
+  EXPECT_EQ(json["lines"][30]["observations"].size(), map.lines[30].observations.size());
+  EXPECT_EQ(json["lines"][30]["observations"][0]["end_px"][1], 4);
+  EXPECT_EQ(json["points"].size(), 300u);
+  EXPECT_EQ(json["keyframes"][3]["t_ns"].get<std::int64_t>(), map.keyframes[3].t_ns);
+  EXPECT_EQ(json["trajectory"].size(), 200u);
+  EXPECT_EQ(json["rig"]["fx"], 458.654);
 }
 
 TEST_F(MapExport, CsvHoldsTheColumnsLosslessly) {
