@@ -2,13 +2,13 @@
 #include "lintel/sensing/EurocToRawlog.h"
 
 #include <mrpt/obs/CObservation.h>
-#include <mrpt/serialization/CArchive.h>
 
 #include <algorithm>
 #include <filesystem>
 #include <set>
 
 #include "GzStream.h"
+#include "RawlogFile.h"
 #include "RawlogNote.h"
 #include "RawlogOutput.h"
 #include "RawlogSources.h"
@@ -97,7 +97,6 @@ void Conversion::openLanes() {
 }
 
 void Conversion::write(GzOutput& file) {
-  auto archive = mrpt::serialization::archiveFrom(file);
   const auto finished = [this](const Lane& lane) { return !lane.source->advance(warn_); };
   lanes_.erase(std::remove_if(lanes_.begin(), lanes_.end(), finished), lanes_.end());
   bool first = true;
@@ -105,12 +104,12 @@ void Conversion::write(GzOutput& file) {
     const auto earliest = std::min_element(
         lanes_.begin(), lanes_.end(), [](const Lane& a, const Lane& b) { return a.source->t_ns() < b.source->t_ns(); });
     const std::int64_t t_ns = earliest->source->t_ns();
-    if (first) archive << *makeComment(formatNote(note_), t_ns);
+    if (first) writeObservation(file, *makeComment(formatNote(note_), t_ns));
     if (first) summary_.first_ns = t_ns;
     first = false;
     summary_.last_ns = t_ns;
     if (const auto observation = earliest->source->make(warn_)) {
-      archive << *observation;
+      writeObservation(file, *observation);
       ++*earliest->count;
     }
     if (earliest->image && progress_) progress_(++images_done_, images_total_);

@@ -61,13 +61,19 @@ GzOutput::~GzOutput() {
 void GzOutput::close() {
   gzFile file = file_;
   file_ = nullptr;
-  if (file && gzclose_w(file) != Z_OK) failWriting(path_);
+  if (file && gzclose_w(file) != Z_OK) failed_ = true;
+  check();
+}
+
+void GzOutput::check() const {
+  if (failed_) failWriting(path_);
 }
 
 std::size_t GzOutput::Write(const void* buffer, std::size_t count) {
   for (std::size_t done = 0; done < count;) {
     const int n = gzwrite(file_, static_cast<const char*>(buffer) + done, chunk(count - done));
-    if (n <= 0) failWriting(path_);
+    failed_ = failed_ || n <= 0;
+    check();
     done += static_cast<std::size_t>(n);
   }
   bytes_ += count;

@@ -40,6 +40,8 @@ class GzOutput final : public mrpt::io::CStream {
   GzOutput(const std::string& path, int level);
   ~GzOutput() override;
 
+  /// Throws std::runtime_error if a Write has failed.
+  void check() const;
   /// Throws std::runtime_error unless everything has reached the file.
   void close();
 
@@ -54,6 +56,7 @@ class GzOutput final : public mrpt::io::CStream {
   std::string path_;
   gzFile file_;
   std::uint64_t bytes_ = 0;
+  bool failed_ = false;
 };
 
 }  // namespace lintel

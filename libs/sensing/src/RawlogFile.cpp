@@ -53,6 +53,15 @@ std::shared_ptr<mrpt::obs::CObservation> RawlogFile::next() {
   return observation;
 }
 
+void writeObservation(GzOutput& file, const mrpt::obs::CObservation& observation) {
+  try {
+    mrpt::serialization::archiveFrom(file) << observation;
+  } catch (const std::exception&) {
+    file.check();  // MRPT has wrapped what we threw into a stack trace
+    throw;
+  }
+}
+
 std::int64_t timeOf(const mrpt::obs::CObservation& observation) { return fromRawlogTime(observation.timestamp); }
 
 }  // namespace lintel

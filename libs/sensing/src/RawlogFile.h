@@ -13,6 +13,7 @@ class CObservation;
 namespace lintel {
 
 class GzInput;
+class GzOutput;
 
 /// Reads the observations of a rawlog one by one, in the file's order; those of sensory frames too.
 class RawlogFile {
@@ -33,6 +34,9 @@ class RawlogFile {
   std::deque<std::shared_ptr<mrpt::obs::CObservation>> pending_;
   std::size_t entries_ = 0;
 };
+
+/// Appends an observation to a rawlog. Throws std::runtime_error (disk full).
+void writeObservation(GzOutput& file, const mrpt::obs::CObservation& observation);
 
 /// Time of an observation [ns since 1970]; negative when it has none.
 std::int64_t timeOf(const mrpt::obs::CObservation& observation);
