@@ -114,22 +114,23 @@ class ImageRenderer::Impl {
   }
 
   float supersample(const View& view, int x, int y) const {
+    constexpr int kPacket = RayCaster::kPacket, kSamples = kSubRows * kSubRows;
+    static_assert(kSamples % kPacket == 0, "whole packets");
     RayCaster::Packet packet;
-    std::array<Eigen::Vector3f, kSubRows> directions;
-    std::array<RayHit, kSubRows> hits;
+    std::array<Eigen::Vector3f, kPacket> directions;
+    std::array<RayHit, kPacket> hits;
     float sum = 0;
-    for (int row = 0; row < kSubRows; ++row) {
-      for (int column = 0; column < kSubRows; ++column) {
+    for (int first = 0; first < kSamples; first += kPacket) {
+      for (int i = 0; i < kPacket; ++i) {
+        const int row = (first + i) / kSubRows, column = (first + i) % kSubRows;
         const float dx = (column + 0.5f) / kSubRows - 0.5f, dy = (row + 0.5f) / kSubRows - 0.5f;
-        directions[column] = view.R_w_c * pixels_.direction(x, y, dx, dy);
-        setDirection(packet, column, directions[column]);
+        directions[i] = view.R_w_c * pixels_.direction(x, y, dx, dy);
+        setDirection(packet, i, directions[i]);
       }
       rays_.cast(view.origin, packet, hits);
-      for (int column = 0; column < kSubRows; ++column) {
-        sum += shade(hits[column], directions[column], pixels_.angle() / kSubRows);
-      }
+      for (int i = 0; i < kPacket; ++i) sum += shade(hits[i], directions[i], pixels_.angle() / kSubRows);
     }
-    return sum / (kSubRows * kSubRows);
+    return sum / kSamples;
   }
 
   /// `angle_rad`: what one sample covers.

@@ -66,8 +66,8 @@ void RayCaster::cast(const Eigen::Vector3f& origin, const Packet& directions, st
   RTCIntersectContext context;
   rtcInitIntersectContext(&context);
   context.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
-  alignas(16) const int valid[kPacket] = {-1, -1, -1, -1};
-  RTCRayHit4 query;
+  alignas(32) const int valid[kPacket] = {-1, -1, -1, -1, -1, -1, -1, -1};
+  RTCRayHit8 query;
   for (int i = 0; i < kPacket; ++i) {
     query.ray.org_x[i] = origin.x();
     query.ray.org_y[i] = origin.y();
@@ -82,7 +82,7 @@ void RayCaster::cast(const Eigen::Vector3f& origin, const Packet& directions, st
     query.ray.flags[i] = 0;
     query.hit.geomID[i] = query.hit.instID[0][i] = RTC_INVALID_GEOMETRY_ID;
   }
-  rtcIntersect4(valid, embree_->scene, &context, &query);
+  rtcIntersect8(valid, embree_->scene, &context, &query);
   for (int i = 0; i < kPacket; ++i) {
     if (query.hit.geomID[i] == RTC_INVALID_GEOMETRY_ID) {
       hits[i] = {};

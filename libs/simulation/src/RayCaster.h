@@ -19,7 +19,7 @@ struct RayHit {
 /// Intersections of rays with a scene's patches. The only place that knows Embree. Safe to use from several threads.
 class RayCaster {
  public:
-  static constexpr int kPacket = 4;
+  static constexpr int kPacket = 8;
   struct Packet {
     std::array<float, kPacket> x, y, z;
   };
