@@ -60,6 +60,8 @@ void checkParams(const Rig& rig, const FrontEndParams& params) {
   require("points.max_iterations", p.max_iterations, 1, 1000);
   require("points.forward_backward_px", p.forward_backward_px, 0.001, 100);
   require("points.epipolar_px", p.epipolar_px, 0.01, 1000);
+  require("points.drift_px", p.drift_px, 0.01, 1000);
+  require("points.drift_frames", p.drift_frames, 2, 1000);
   require("points.border_px", p.border_px, 0, 100);
   require("points.initial_gyro_bias_sigma", p.initial_gyro_bias_sigma, 1e-6, 10);
   checkLines(params.lines);

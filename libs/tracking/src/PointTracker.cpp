@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "PointTracker.h"
 
+#include <algorithm>
 #include <cmath>
 #include <opencv2/video/tracking.hpp>
 
@@ -18,10 +19,20 @@ bool inside(const PinholeRadtan& camera, const cv::Point2f& p, double border) {
   return camera.contains({p.x, p.y}, border);
 }
 
+TwoViewParams twoViewParams(const PinholeRadtan& camera, double threshold_px) {
+  TwoViewParams params;
+  params.focal_px = camera.meanFocal();
+  params.threshold_px = threshold_px;
+  return params;
+}
+
 }  // namespace
 
 PointTracker::PointTracker(const Rig& rig, const PointTrackerParams& params)
-    : camera_(rig.camera), params_(params), detector_(params) {}
+    : camera_(rig.camera),
+      params_(params),
+      detector_(params),
+      drift_(params.drift_frames, twoViewParams(rig.camera, params.drift_px)) {}
 
 std::vector<cv::Point2f> PointTracker::pixels() const {
   std::vector<cv::Point2f> px;
@@ -38,6 +49,7 @@ void PointTracker::process(const ImagePyramid& pyramid, GyroPrediction& gyro, Fr
     rejectByEpipolarGeometry(followed, gyro, statistics.points);
     rejectCrowded(followed, statistics.points);
     accept(followed, gyro, statistics.points);
+    rejectDrifting(gyro, statistics.points);
   }
   if (++frames_since_detection_ >= params_.detect_every_n ||
       points_.size() * 3 < static_cast<std::size_t>(params_.max_points)) {
@@ -84,10 +96,8 @@ void PointTracker::rejectByEpipolarGeometry(Followed& followed, GyroPrediction& 
     pairs.push_back({points_[i].normalised, camera_.normalise({followed.px[i].x, followed.px[i].y})});
     index.push_back(i);
   }
-  TwoViewParams two_view;
-  two_view.focal_px = camera_.meanFocal();
-  two_view.threshold_px = params_.epipolar_px;
-  const TwoViewMotion motion = twoViewMotion(pairs, gyro.R_c1_c0(), gyro.information(), two_view);
+  const TwoViewMotion motion =
+      twoViewMotion(pairs, gyro.R_c1_c0(), gyro.information(), twoViewParams(camera_, params_.epipolar_px));
   for (std::size_t k = 0; k < index.size(); ++k)
     if (!motion.inlier[k]) {
       followed.alive[index[k]] = 0;
@@ -128,6 +138,22 @@ void PointTracker::accept(const Followed& followed, const GyroPrediction& gyro, 
     kept.push_back(p);
   }
   statistics.tracked += static_cast<std::int64_t>(kept.size());
+  points_ = std::move(kept);
+}
+
+void PointTracker::rejectDrifting(const GyroPrediction& gyro, PointStatistics& statistics) {
+  drift_.push(points_, gyro.R_c1_c0());
+  const std::vector<TrackId> drifting = drift_.drifting();
+  if (drifting.empty()) return;
+  std::vector<PointObservation> kept;
+  for (const PointObservation& p : points_) {
+    if (!std::binary_search(drifting.begin(), drifting.end(), p.id)) {
+      kept.push_back(p);
+      continue;
+    }
+    ++statistics.lost_drift;
+    statistics.lifetimes.add(p.track_length - 1);
+  }
   points_ = std::move(kept);
 }
 

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "CornerDetector.h"
+#include "DriftCheck.h"
 #include "GyroPrediction.h"
 #include "ImagePyramid.h"
 #include "TwoViewMotion.h"
@@ -44,12 +45,14 @@ class PointTracker {
   void rejectByEpipolarGeometry(Followed& followed, GyroPrediction& gyro, PointStatistics& statistics) const;
   void rejectCrowded(Followed& followed, PointStatistics& statistics) const;
   void accept(const Followed& followed, const GyroPrediction& gyro, PointStatistics& statistics);
+  void rejectDrifting(const GyroPrediction& gyro, PointStatistics& statistics);
   void addNew(const ImagePyramid& pyramid, PointStatistics& statistics);
   std::vector<cv::Point2f> pixels() const;
 
   PinholeRadtan camera_;
   PointTrackerParams params_;
   CornerDetector detector_;
+  DriftCheck drift_;
   std::vector<PointObservation> points_;
   std::vector<PointFlow> flow_;
   TrackId next_id_ = 1;

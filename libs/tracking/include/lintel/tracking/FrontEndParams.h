@@ -29,6 +29,8 @@ struct PointTrackerParams {
   int max_iterations = 20;      ///< of KLT, per level
   double forward_backward_px = 0.5;      ///< largest return error of a track followed back to the frame before
   double epipolar_px = 1.0;              ///< largest distance from the epipolar line between consecutive frames
+  double drift_px = 1.5;                 ///< largest distance from the epipolar line over drift_frames
+  int drift_frames = 10;                 ///< baseline of the check against slow drift [frames]
   int border_px = 4;                     ///< points nearer to the image border are dropped
   double initial_gyro_bias_sigma = 0.1;  ///< how wrong the gyro may be at the start [rad/s]
 
@@ -42,6 +44,8 @@ struct PointTrackerParams {
     field("max_iterations", max_iterations);
     field("forward_backward_px", forward_backward_px);
     field("epipolar_px", epipolar_px);
+    field("drift_px", drift_px);
+    field("drift_frames", drift_frames);
     field("border_px", border_px);
     field("initial_gyro_bias_sigma", initial_gyro_bias_sigma);
   }

@@ -35,6 +35,7 @@ struct PointStatistics {
   std::int64_t lost_klt = 0;       ///< not found, or out of the image
   std::int64_t lost_backward = 0;  ///< forward-backward check
   std::int64_t lost_epipolar = 0;  ///< off the epipolar line
+  std::int64_t lost_drift = 0;     ///< off the epipolar line over a longer baseline
   std::int64_t lost_crowded = 0;   ///< ran into an older point
   TrackLifetimes lifetimes;
 };

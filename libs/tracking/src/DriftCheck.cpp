@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "DriftCheck.h"
+
+namespace lintel {
+namespace {
+
+constexpr double kRotationSigma_rad = 1e-3;  ///< of the chained rotations of half a second
+
+}  // namespace
+
+void DriftCheck::push(const std::vector<PointObservation>& points, const Eigen::Quaterniond& R_c1_c0) {
+  for (Entry& entry : entries_) entry.R_now_then = (R_c1_c0 * entry.R_now_then).normalized();
+  entries_.push_back({points, Eigen::Quaterniond::Identity()});
+  if (static_cast<int>(entries_.size()) > gap_frames_ + 1) entries_.pop_front();
+}
+
+std::vector<TrackId> DriftCheck::drifting() const {
+  std::vector<TrackId> ids;
+  if (static_cast<int>(entries_.size()) <= gap_frames_) return ids;
+  std::vector<TwoViewPair> pairs;
+  std::vector<TrackId> paired;
+  auto then = entries_.front().points.begin();
+  const auto then_end = entries_.front().points.end();
+  for (const PointObservation& now : entries_.back().points) {
+    while (then != then_end && then->id < now.id) ++then;
+    if (then == then_end || then->id != now.id) continue;
+    pairs.push_back({then->normalised, now.normalised});
+    paired.push_back(now.id);
+  }
+  const Eigen::Matrix3d information = Eigen::Matrix3d::Identity() / (kRotationSigma_rad * kRotationSigma_rad);
+  const TwoViewMotion motion = twoViewMotion(pairs, entries_.front().R_now_then, information, params_);
+  if (2 * static_cast<std::size_t>(motion.inliers) < pairs.size()) return ids;  // no motion explains most: no verdict
+  for (std::size_t i = 0; i < paired.size(); ++i)
+    if (!motion.inlier[i]) ids.push_back(paired[i]);
+  return ids;
+}
+
+}  // namespace lintel
