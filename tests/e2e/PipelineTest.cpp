@@ -95,9 +95,10 @@ TEST_F(Pipeline, FollowsTheTruth) {
 
 TEST_F(Pipeline, MapsLinesWhereEdgesAre) {
   const auto lines = evaluate("out")["lines"];
-  EXPECT_GE(lines["lines"], 20);
-  EXPECT_GE(lines["precision"][2], 0.3);  // within 10 cm; the rest are lines in textures, which are no edges
-  EXPECT_GE(lines["all_matched"]["count"], 10);
+  EXPECT_GE(lines["lines"], 40);
+  EXPECT_GE(lines["precision"][2], 0.7);  // within 10 cm
+  EXPECT_GE(lines["all_matched"]["count"], 30);
+  EXPECT_LE(lines["all_matched"]["direction_median_rad"], 0.05);
 }
 
 TEST_F(Pipeline, ExportsEveryForm) {
