@@ -30,11 +30,6 @@ std::vector<ImageLine> DescriptorLineTracker::detect(const ImagePyramid& pyramid
 void DescriptorLineTracker::process(const ImagePyramid& pyramid, const GyroPrediction& gyro,
                                     const std::vector<PointFlow>&, FrontEndStatistics& statistics) {
   observations_.clear();
-  R_c_cd_ = (gyro.R_c1_c0() * R_c_cd_).normalized();
-  const bool skip = frames_since_detection_ != 0;
-  frames_since_detection_ = (frames_since_detection_ + 1) % params_.detect_every_n;
-  if (skip) return;
-
   StageTimer timer(statistics, "lines_descriptor");
   const std::vector<ImageLine> detected = detect(pyramid, statistics.lines);
   const cv::Mat descriptors = matcher_.describe(pyramid.image(), detected);

@@ -10,8 +10,8 @@
 
 namespace lintel {
 
-/// Mode `descriptor`: every detection frame stands alone and is matched to the one before by LBD descriptors. The
-/// baseline that optical flow is compared with; frames between detections carry no lines.
+/// Mode `descriptor`: lines are detected in every frame and matched to those of the frame before by LBD descriptors.
+/// The baseline that optical flow is compared with.
 class DescriptorLineTracker : public LineTracker {
  public:
   DescriptorLineTracker(const Rig& rig, const LineTrackerParams& params);
@@ -35,11 +35,10 @@ class DescriptorLineTracker : public LineTracker {
   LineMatcher matcher_;
   Eigen::Quaterniond R_c_cd_ =
       Eigen::Quaterniond::Identity();  ///< rotation since the last detection (cd: the camera then)
-  std::vector<Track> tracks_;          ///< of the last detection
+  std::vector<Track> tracks_;          ///< of the frame before
   cv::Mat descriptors_;
   std::vector<LineObservation> observations_;
   TrackId next_id_ = 1;
-  int frames_since_detection_ = 0;
 };
 
 }  // namespace lintel

@@ -58,13 +58,13 @@ struct LineTrackerParams {
       "flow";  ///< flow: predicted by optical flow, merged with detections; descriptor: LBD matches alone (baseline)
   std::string detector = "edge_drawing";  ///< edge_drawing or lsd (slower); both at half resolution
   int gradient_threshold = 24;            ///< of edge_drawing: Sobel response an edge must have
-  int detect_every_n = 2;                 ///< frames between detections; 2 = the estimator's rate at 20 Hz images
+  int detect_every_n = 3;                 ///< frames between detections, mode flow
   int max_lines = 100;                    ///< lines held at once; older, then longer ones first
   int sightings_before_use = 2;           ///< detections of a line before it gets an identity: chance lines stay out
   double min_length_px = 50;              ///< of a new line [Lim2021: 50 px]
   double keep_length_px = 30;             ///< a tracked line that gets shorter is lost
   int window_px = 9;                      ///< side of the KLT patch of a sample on a line
-  int flow_levels = 3;                    ///< pyramid levels for the samples
+  int flow_levels = 2;                    ///< pyramid levels for the samples
   int max_iterations = 6;                 ///< of their KLT, per level
   int min_samples = 5;                    ///< on a short line
   int max_samples = 6;                    ///< on a long line
@@ -75,7 +75,7 @@ struct LineTrackerParams {
   double merge_distance_px = 3;   ///< largest distance of the detection's ends from the predicted line
   int max_frames_without_detection = 20;  ///< a line that only optical flow sees is dropped after this
   int border_px = 4;                      ///< lines end this far from the image border
-  int descriptor_distance = 40;  ///< largest Hamming distance of LBD descriptors (of 256 bits), mode descriptor
+  int descriptor_distance = 80;  ///< largest Hamming distance of LBD descriptors (of 256 bits), mode descriptor
 
   template <class F>
   void fields(F&& field) {
