@@ -9,16 +9,35 @@ foreach(line IN LISTS lintel_dependency_lines)
   list(APPEND LINTEL_DEBIAN_PACKAGES ${package})
 endforeach()
 
+function(lintel_check_listed DEBIAN_PACKAGE)
+  if(NOT DEBIAN_PACKAGE IN_LIST LINTEL_DEBIAN_PACKAGES)
+    message(FATAL_ERROR "${DEBIAN_PACKAGE} is missing in packaging/dependencies: add it, with the reason")
+  endif()
+endfunction()
+
+function(lintel_missing NAME DEBIAN_PACKAGE)
+  list(JOIN LINTEL_DEBIAN_PACKAGES " " all_packages)
+  message(FATAL_ERROR "${NAME} was not found. On Debian it is in ${DEBIAN_PACKAGE}; everything needed:\n"
+                      "  apt-get install ${all_packages}")
+endfunction()
+
 # lintel_require(NAME DEBIAN_PACKAGE [argument…]): find_package(NAME argument…); where that fails, says what to install.
 # A macro, as find_package sets variables for its caller.
 macro(lintel_require NAME DEBIAN_PACKAGE)
-  if(NOT ${DEBIAN_PACKAGE} IN_LIST LINTEL_DEBIAN_PACKAGES)
-    message(FATAL_ERROR "${DEBIAN_PACKAGE} is missing in packaging/dependencies: add it, with the reason")
-  endif()
+  lintel_check_listed(${DEBIAN_PACKAGE})
   find_package(${NAME} ${ARGN} QUIET)
   if(NOT ${NAME}_FOUND)
-    list(JOIN LINTEL_DEBIAN_PACKAGES " " lintel_all_packages)
-    message(FATAL_ERROR "${NAME} was not found. On Debian it is in ${DEBIAN_PACKAGE}; everything needed:\n"
-                        "  apt-get install ${lintel_all_packages}")
+    lintel_missing(${NAME} ${DEBIAN_PACKAGE})
+  endif()
+endmacro()
+
+# lintel_require_library(NAME DEBIAN_PACKAGE HEADER LIBRARY): the same for a library without a CMake configuration; sets
+# NAME_INCLUDE_DIR and NAME_LIBRARY.
+macro(lintel_require_library NAME DEBIAN_PACKAGE HEADER LIBRARY)
+  lintel_check_listed(${DEBIAN_PACKAGE})
+  find_path(${NAME}_INCLUDE_DIR ${HEADER})
+  find_library(${NAME}_LIBRARY ${LIBRARY})
+  if(NOT ${NAME}_INCLUDE_DIR OR NOT ${NAME}_LIBRARY)
+    lintel_missing(${NAME} ${DEBIAN_PACKAGE})
   endif()
 endmacro()
