@@ -35,7 +35,7 @@ void DescriptorLineTracker::process(const ImagePyramid& pyramid, const GyroPredi
   const cv::Mat descriptors = matcher_.describe(pyramid.image(), detected);
   std::vector<ImageLine> expected;
   const auto turned = [&](const Eigen::Vector2d& u) -> Eigen::Vector2d {
-    const Eigen::Vector3d ray = R_c_cd_ * (u / camera_.focal()).homogeneous();
+    const Eigen::Vector3d ray = gyro.R_c1_c0() * (u / camera_.focal()).homogeneous();
     return camera_.focal() * ray.head<2>() / std::max(ray.z(), 0.1);
   };
   for (const Track& track : tracks_) expected.push_back({turned(track.line.start), turned(track.line.end)});
@@ -68,7 +68,6 @@ void DescriptorLineTracker::process(const ImagePyramid& pyramid, const GyroPredi
             [](const LineObservation& a, const LineObservation& b) { return a.id < b.id; });
   tracks_ = std::move(tracks);
   descriptors_ = descriptors;
-  R_c_cd_.setIdentity();
 }
 
 }  // namespace lintel

@@ -33,9 +33,7 @@ class DescriptorLineTracker : public LineTracker {
   LineCamera camera_;
   LineDetector detector_;
   LineMatcher matcher_;
-  Eigen::Quaterniond R_c_cd_ =
-      Eigen::Quaterniond::Identity();  ///< rotation since the last detection (cd: the camera then)
-  std::vector<Track> tracks_;          ///< of the frame before
+  std::vector<Track> tracks_;  ///< of the frame before
   cv::Mat descriptors_;
   std::vector<LineObservation> observations_;
   TrackId next_id_ = 1;

@@ -10,6 +10,7 @@ namespace lintel {
 namespace {
 
 constexpr double kSupportWithoutFlow = 0.7;  ///< an edge found without optical flow must be a clear one
+constexpr double kApart_px = 1.0;            ///< a frame: lines that differ by this lie at different depths
 constexpr double kSupportOfNew = 0.7;        ///< new lines are chosen, old ones are kept
 
 }  // namespace
@@ -37,9 +38,9 @@ void FlowLineTracker::process(const ImagePyramid& pyramid, const GyroPrediction&
   frames_since_detection_ = (frames_since_detection_ + 1) % params_.detect_every_n;
   StageTimer timer(statistics, "lines_refine");
   refine(pyramid, statistics.lines);
-  if (detect) {
-    addNew(pyramid, fresh);
+  if (detect) {  // not more often: lines that touch for a frame or two part again
     dropDuplicates(statistics.lines);
+    addNew(pyramid, fresh);
   }
   publish(statistics.lines);
 }
@@ -115,22 +116,32 @@ void FlowLineTracker::refine(const ImagePyramid& pyramid, LineStatistics& statis
     }
     track.line = *clipped;
     track.motion = normalMotion(track.turned, track.line);
+    track.steady_motion = track.steady_motion ? 0.7 * *track.steady_motion + 0.3 * *track.motion : *track.motion;
     track.sigma_px = refined->sigma_px;
     kept.push_back(track);
   }
   tracks_ = std::move(kept);
 }
 
+bool FlowLineTracker::moveApart(const Track& a, const Track& b) {
+  return a.steady_motion && b.steady_motion && (*a.steady_motion - *b.steady_motion).cwiseAbs().maxCoeff() > kApart_px;
+}
+
 void FlowLineTracker::dropDuplicates(LineStatistics& statistics) {
+  std::vector<char> dropped(tracks_.size(), 0);
+  for (std::size_t i = 0; i < tracks_.size(); ++i)
+    for (std::size_t j = i + 1; j < tracks_.size() && !dropped[i]; ++j) {
+      if (dropped[j] || !merger_.duplicates(tracks_[i].line, tracks_[j].line)) continue;
+      dropped[j] = 1;  // the younger one
+      // Two edges at different depths that cross in the image: who is who afterwards, nobody knows.
+      if (moveApart(tracks_[i], tracks_[j])) dropped[i] = 1;
+    }
   std::vector<Track> kept;
-  for (const Track& track : tracks_) {
-    // Ids ascend: the older one has been kept already.
-    const auto same = std::find_if(kept.begin(), kept.end(),
-                                   [&](const Track& older) { return merger_.duplicates(older.line, track.line); });
-    if (same == kept.end())
-      kept.push_back(track);
+  for (std::size_t i = 0; i < tracks_.size(); ++i) {
+    if (dropped[i])
+      end(tracks_[i], statistics.lost_duplicate, statistics);
     else
-      end(track, statistics.lost_duplicate, statistics);
+      kept.push_back(tracks_[i]);
   }
   tracks_ = std::move(kept);
 }

@@ -2,6 +2,7 @@
 #include "LineMerger.h"
 
 #include <algorithm>
+#include <cmath>
 
 namespace lintel {
 namespace {
@@ -67,6 +68,8 @@ MergedLines LineMerger::merge(const std::vector<ImageLine>& predicted, const std
 bool LineMerger::duplicates(const ImageLine& a, const ImageLine& b) const {
   const bool a_longer = a.length() >= b.length();
   const ImageLine &longer = a_longer ? a : b, &shorter = a_longer ? b : a;
+  if (std::abs(longer.normal().dot(shorter.start - longer.start)) > kDuplicateDistance_px)
+    return false;  // most, quickly
   const LineRelation relation = relate(longer, shorter);
   return relation.angle_rad < params_.merge_angle_rad && relation.distance_px < kDuplicateDistance_px &&
          relation.overlap_px > kDuplicateOverlap * shorter.length();
