@@ -16,7 +16,6 @@ namespace {
 /// Vertices and faces of a mesh to be.
 struct MeshParts {
   std::string name;
-  Rgb colour;                     // of the material
   unsigned indices_per_face = 2;  // 1 points, 2 lines, 3 triangles
   std::vector<Eigen::Vector3f> vertices;
   std::vector<Rgb> colours;  // of the vertices
@@ -48,7 +47,7 @@ struct MeshParts {
   }
 };
 
-aiMesh* makeMesh(const MeshParts& parts, unsigned material, bool vertex_colours) {
+aiMesh* makeMesh(const MeshParts& parts, unsigned material) {
   auto* mesh = new aiMesh;
   mesh->mName = parts.name;
   mesh->mMaterialIndex = material;
@@ -57,14 +56,13 @@ aiMesh* makeMesh(const MeshParts& parts, unsigned material, bool vertex_colours)
                                                         : aiPrimitiveType_TRIANGLE;
   mesh->mNumVertices = static_cast<unsigned>(parts.vertices.size());
   mesh->mVertices = new aiVector3D[mesh->mNumVertices];
-  if (vertex_colours) mesh->mColors[0] = new aiColor4D[mesh->mNumVertices];
+  mesh->mColors[0] = new aiColor4D[mesh->mNumVertices];
   for (unsigned i = 0; i < mesh->mNumVertices; ++i) {
     const Eigen::Vector3f& v = parts.vertices[i];
     const Rgb c = parts.colours[i];
     mesh->mVertices[i] = {v.x(), v.y(), v.z()};
-    if (vertex_colours)
-      mesh->mColors[0][i] = {static_cast<float>(c.r) / 255, static_cast<float>(c.g) / 255,
-                             static_cast<float>(c.b) / 255, 1};
+    mesh->mColors[0][i] = {static_cast<float>(c.r) / 255, static_cast<float>(c.g) / 255, static_cast<float>(c.b) / 255,
+                           1};
   }
   const unsigned n = parts.indices_per_face;
   mesh->mNumFaces = static_cast<unsigned>(parts.indices.size()) / n;
@@ -77,18 +75,19 @@ aiMesh* makeMesh(const MeshParts& parts, unsigned material, bool vertex_colours)
   return mesh;
 }
 
-aiMaterial* makeMaterial(const std::string& name, const aiColor3D& colour, bool unlit) {
+/// White, as the vertices bring the colour: for strokes unlit, for tubes dull.
+aiMaterial* makeMaterial(bool unlit) {
   auto* material = new aiMaterial;
-  const aiString material_name(name);
-  const aiColor3D black(0, 0, 0);
-  const aiColor4D base(colour.r, colour.g, colour.b, 1);
+  const aiString material_name(unlit ? "Strokes" : "Tubes");
+  const aiColor3D white(1, 1, 1), black(0, 0, 0);
+  const aiColor4D base(1, 1, 1, 1);
   const float rough = 0.9F, metallic = 0;
   material->AddProperty(&material_name, AI_MATKEY_NAME);
-  material->AddProperty(&colour, 1, AI_MATKEY_COLOR_DIFFUSE);
+  material->AddProperty(&white, 1, AI_MATKEY_COLOR_DIFFUSE);
   material->AddProperty(&black, 1, AI_MATKEY_COLOR_SPECULAR);
   material->AddProperty(&black, 1, AI_MATKEY_COLOR_AMBIENT);
   // Strokes have no normals: a viewer without "unlit" shows at least what they emit.
-  material->AddProperty(unlit ? &colour : &black, 1, AI_MATKEY_COLOR_EMISSIVE);
+  material->AddProperty(unlit ? &white : &black, 1, AI_MATKEY_COLOR_EMISSIVE);
   material->AddProperty(&base, 1, AI_MATKEY_BASE_COLOR);
   material->AddProperty(&rough, 1, AI_MATKEY_ROUGHNESS_FACTOR);
   material->AddProperty(&metallic, 1, AI_MATKEY_METALLIC_FACTOR);
@@ -100,7 +99,7 @@ aiMaterial* makeMaterial(const std::string& name, const aiColor3D& colour, bool 
 /// Collects nodes, meshes and materials; hands them to an aiScene at the end.
 class SceneBuilder {
  public:
-  SceneBuilder(const Drawing& drawing, bool vertex_colours) : drawing_(drawing), vertex_colours_(vertex_colours) {}
+  explicit SceneBuilder(const Drawing& drawing) : drawing_(drawing) {}
 
   std::unique_ptr<aiScene> build() {
     auto scene = std::make_unique<aiScene>();
@@ -111,7 +110,7 @@ class SceneBuilder {
     for (const DrawnPart& part : drawing_.parts) {
       if (part.layer != MapLayer::kLines) addPart(part, part.name, *root);
     }
-    if (materials_.empty()) materialOf({"", {}, 2, {}, {}, {}});  // assimp wants one even for an empty map
+    if (materials_.empty()) materialOf(true);  // assimp wants one even for an empty map
     scene->mNumMeshes = static_cast<unsigned>(meshes_.size());
     scene->mMeshes = meshes_.empty() ? nullptr : new aiMesh*[meshes_.size()];
     std::copy(meshes_.begin(), meshes_.end(), scene->mMeshes);
@@ -137,52 +136,32 @@ class SceneBuilder {
   }
 
   void addPart(const DrawnPart& part, const std::string& name, aiNode& parent) {
-    std::map<Rgb, MeshParts> by_colour;
-    const auto add = [&](const auto& drawn) {
-      const Rgb key = vertex_colours_ ? Rgb{255, 255, 255} : drawn.colour;
-      MeshParts& parts = by_colour[key];
-      parts.name = name, parts.colour = key;
-      parts.add(drawn, drawing_);
-    };
-    for (const DrawnSegment& s : part.segments) add(s);
-    for (const DrawnPoint& p : part.points) add(p);
-    std::vector<unsigned> meshes;
-    for (const auto& [colour, parts] : by_colour) {
-      if (parts.indices.empty()) continue;  // every tube too thin for single precision
-      meshes.push_back(static_cast<unsigned>(meshes_.size()));
-      meshes_.push_back(makeMesh(parts, materialOf(parts), vertex_colours_));
-    }
+    MeshParts parts;
+    parts.name = name;
+    for (const DrawnSegment& s : part.segments) parts.add(s, drawing_);
+    for (const DrawnPoint& p : part.points) parts.add(p, drawing_);
     aiNode* node = addNode(name, parent);
-    node->mNumMeshes = static_cast<unsigned>(meshes.size());
-    node->mMeshes = meshes.empty() ? nullptr : new unsigned[meshes.size()];
-    std::copy(meshes.begin(), meshes.end(), node->mMeshes);
+    if (parts.indices.empty()) return;  // every tube too thin for single precision
+    node->mNumMeshes = 1;
+    node->mMeshes = new unsigned[1]{static_cast<unsigned>(meshes_.size())};
+    meshes_.push_back(makeMesh(parts, materialOf(parts.indices_per_face != 3)));
   }
 
-  unsigned materialOf(const MeshParts& parts) {
-    const bool unlit = parts.indices_per_face != 3;
-    const auto [entry, is_new] = known_.try_emplace({parts.colour, unlit}, static_cast<unsigned>(materials_.size()));
-    if (is_new) {
-      const Rgb c = parts.colour;
-      const aiColor3D colour(static_cast<float>(c.r) / 255, static_cast<float>(c.g) / 255,
-                             static_cast<float>(c.b) / 255);
-      materials_.push_back(
-          makeMaterial((unlit ? "Strokes " : "Tubes ") + std::to_string(materials_.size()), colour, unlit));
-    }
+  unsigned materialOf(bool unlit) {
+    const auto [entry, is_new] = known_.try_emplace(unlit, static_cast<unsigned>(materials_.size()));
+    if (is_new) materials_.push_back(makeMaterial(unlit));
     return entry->second;
   }
 
   const Drawing& drawing_;
-  bool vertex_colours_;
   std::vector<aiMesh*> meshes_;
   std::vector<aiMaterial*> materials_;
-  std::map<std::pair<Rgb, bool>, unsigned> known_;
+  std::map<bool, unsigned> known_;
 };
 
 }  // namespace
 
-std::unique_ptr<aiScene> makeAssimpScene(const Drawing& drawing, bool vertex_colours) {
-  return SceneBuilder(drawing, vertex_colours).build();
-}
+std::unique_ptr<aiScene> makeAssimpScene(const Drawing& drawing) { return SceneBuilder(drawing).build(); }
 
 std::string exportByAssimp(const aiScene& scene, const std::string& format, const std::string& path) {
   Assimp::Exporter exporter;

@@ -19,7 +19,7 @@ void replaceBetween(std::string& text, const std::string& tag, const std::string
 }  // namespace
 
 OutputFiles daeFiles(const Drawing& drawing, const std::string& path) {
-  std::string text = exportByAssimp(*makeAssimpScene(drawing, true), "collada", path);
+  std::string text = exportByAssimp(*makeAssimpScene(drawing), "collada", path);
   for (const char* tag : {"created", "modified"}) replaceBetween(text, tag, "2000-01-01T00:00:00");
   return {{path, std::move(text)}};
 }

@@ -151,6 +151,7 @@ Drawing makeDrawing(const LineMap& map, const ExportParams& params) {
   Drawing drawing;
   drawing.map = &map;
   drawing.style = *params.style;
+  drawing.colour = params.colour;
   const auto& layers = *params.layers;
   if (layers.count(MapLayer::kLines)) selectLines(map, params, drawing);
   drawing.core = coreOf(drawing);

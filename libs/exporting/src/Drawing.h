@@ -39,6 +39,7 @@ struct Drawing {
   std::vector<const MapKeyframe*> keyframes;  ///< drawn ones
   std::vector<const MapLine*> lines;          ///< drawn ones, ascending id
   LineStyle style = LineStyle::kLines;
+  LineColour colour = LineColour::kKind;
   double radius_m = 0.01;                           ///< of tubes
   double frustum_m = 0.2;                           ///< depth of a keyframe's frustum
   Eigen::AlignedBox3d core;                         ///< of the 2 to 98 % of what is drawn; never empty

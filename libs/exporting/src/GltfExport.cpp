@@ -4,6 +4,7 @@
 #include <string_view>
 
 #include "AssimpScene.h"
+#include "Base64.h"
 #include "Writers.h"
 
 // glTF 2 by assimp, then what assimp cannot say: which data belongs to each line (extras), unlit strokes.
@@ -115,25 +116,12 @@ void removeEmptyLists(Json& json) {
 }
 
 Glb makeGlb(const Drawing& drawing, const std::string& path) {
-  const auto scene = makeAssimpScene(drawing, true);
+  const auto scene = makeAssimpScene(drawing);
   Glb glb = splitGlb(exportByAssimp(*scene, "glb2", path));
   addExtras(drawing, glb.json);
   writeMaterials(glb.json);
   removeEmptyLists(glb.json);
   return glb;
-}
-
-std::string base64(const std::string& bytes) {
-  constexpr char digits[] = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
-  std::string text;
-  text.reserve((bytes.size() + 2) / 3 * 4);
-  for (std::size_t i = 0; i < bytes.size(); i += 3) {
-    std::uint32_t v = 0;
-    for (std::size_t k = 0; k < 3; ++k)
-      v = v << 8 | (i + k < bytes.size() ? static_cast<unsigned char>(bytes[i + k]) : 0U);
-    for (std::size_t k = 0; k < 4; ++k) text.push_back(i + k > bytes.size() ? '=' : digits[v >> (18 - 6 * k) & 63]);
-  }
-  return text;
 }
 
 }  // namespace

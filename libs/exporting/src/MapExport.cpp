@@ -30,8 +30,10 @@ struct Format {
 
 const std::vector<Format>& formats() {
   static const std::vector<Format> all{
-      {"glb", glbFiles, LineStyle::kLines, kAll, "f3d FILE, Blender (import glTF 2.0) or a browser's glTF viewer"},
-      {"gltf", gltfFiles, LineStyle::kLines, kAll, "f3d FILE, Blender (import glTF 2.0) or a browser's glTF viewer"},
+      {"glb", glbFiles, LineStyle::kLines, kAll,
+       "f3d --point-size=2 FILE, Blender (import glTF 2.0) or a browser's glTF viewer"},
+      {"gltf", gltfFiles, LineStyle::kLines, kAll,
+       "f3d --point-size=2 FILE, Blender (import glTF 2.0) or a browser's glTF viewer"},
       {"obj", objFiles, LineStyle::kTubes, kOnlyLines, "meshlab FILE or Blender (import Wavefront)"},
       {"ply", plyFiles, LineStyle::kTubes, kOnlyLines, "meshlab FILE or CloudCompare"},
       {"3Dscene", sceneFiles, LineStyle::kLines, kAll, "SceneViewer3D FILE"},
@@ -41,6 +43,7 @@ const std::vector<Format>& formats() {
       {"json", jsonFiles, LineStyle::kLines, kAll, "any program that reads JSON"},
       {"dxf", dxfFiles, LineStyle::kLines, kNoPoints, "LibreCAD, FreeCAD, AutoCAD or CloudCompare"},
       {"png", pngFiles, LineStyle::kLines, kNoPoints, "any picture viewer"},
+      {"html", htmlFiles, LineStyle::kLines, kAll, "any browser; it needs no network"},
   };
   return all;
 }

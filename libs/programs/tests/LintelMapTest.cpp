@@ -56,7 +56,7 @@ TEST_F(LintelMapTest, WritesTheFormThatTheExtensionNames) {
   EXPECT_EQ(run({in("map.lintel"), "-o", in("map.glb"), "-o", in("map.ply")}), 0);
   EXPECT_TRUE(exists("map.glb") && exists("map.ply"));
   EXPECT_THAT(out_.str(), HasSubstr("map.glb: 3 lines"));
-  EXPECT_THAT(out_.str(), HasSubstr("f3d " + in("map.glb")));
+  EXPECT_THAT(out_.str(), HasSubstr("f3d --point-size=2 " + in("map.glb")));
   EXPECT_EQ(err_.str(), "");
 }
 
