@@ -194,6 +194,7 @@ void Estimator::Impl::solve(WindowUpdate& update) {
   triangulateLines(window_, params_);
   WindowFactors factors(window_, params_.factors);
   factors.addPriors();
+  factors.addGauge();
   factors.addCalibrationPriors(params_.calibration, rig_.T_b_c);
   factors.addImu();
   factors.addRest(params_.rest_velocity_sigma);

@@ -54,16 +54,6 @@ ImuStatistics imuStatistics(const SlidingWindow& window) {
   return s;
 }
 
-/// Ties position and yaw of the first frame while the start is adjusted: the four directions nothing else sees.
-void addGauge(WindowFactors& factors, const WindowFrame& first) {
-  Eigen::MatrixXd A = Eigen::MatrixXd::Zero(4, kPoseTangent);
-  A.topLeftCorner<3, 3>() = Eigen::Matrix3d::Identity() * 1e3;
-  A.block<1, 3>(3, 3) = Eigen::RowVector3d::UnitZ() * first.T_w_b().R() * 1e3;
-  std::vector<PriorBlock> blocks{{manifoldOf(BlockKey::kPose), first.pose}};
-  factors.add(std::make_unique<PriorFactor>(std::move(blocks), std::move(A), Eigen::VectorXd::Zero(4)),
-              {{BlockKey::kPose, first.id}});
-}
-
 }  // namespace
 
 double medianDisparityPx(const SlidingWindow& window, std::size_t frame_a, std::size_t frame_b, bool rotation_free) {
@@ -164,7 +154,7 @@ void Initializer::adjust(SlidingWindow& window) const {
     factors.addPriors();
     factors.addImu();
     factors.addPoints();
-    addGauge(factors, window.frames.front());
+    factors.addGauge();
     solveWindow(window, factors.factors(), frozen, 20);
     loose.point_max_error_px = round == 0 ? 8 : params_.landmarks.point_max_error_px;
     for (auto& [id, track] : window.points)
@@ -197,7 +187,7 @@ double Initializer::relativeScaleSigma(SlidingWindow& window) const {
   factors.addPriors();
   factors.addImu();
   factors.addPoints();
-  addGauge(factors, window.frames.front());
+  factors.addGauge();
   CalibrationParams frozen = params_.calibration;
   frozen.extrinsic_rotation_sigma_rad = frozen.extrinsic_translation_sigma_m = 1e-6;
   frozen.refine_camera = frozen.refine_time_offset = false;

@@ -48,6 +48,17 @@ void WindowFactors::addCalibrationPriors(const CalibrationParams& p, const Pose&
       {{BlockKey::kCorrection, 0}});
 }
 
+void WindowFactors::addGauge() {
+  constexpr double kWeight = 1e3;  // a millimetre, a milliradian: stiff, yet no worse conditioned than the rest
+  const WindowFrame& oldest = window_.frames.front();
+  Eigen::MatrixXd A = Eigen::MatrixXd::Zero(4, kPoseTangent);
+  A.topLeftCorner<3, 3>() = Eigen::Matrix3d::Identity() * kWeight;
+  A.block<1, 3>(3, 3) = Eigen::RowVector3d::UnitZ() * oldest.T_w_b().R() * kWeight;
+  std::vector<PriorBlock> blocks{{manifoldOf(BlockKey::kPose), oldest.pose}};
+  add(std::make_unique<PriorFactor>(std::move(blocks), std::move(A), Eigen::VectorXd::Zero(4)),
+      {{BlockKey::kPose, oldest.id}});
+}
+
 void WindowFactors::addImu() {
   for (std::size_t i = 1; i < window_.frames.size(); ++i) addImu(window_.frames[i - 1], window_.frames[i]);
 }

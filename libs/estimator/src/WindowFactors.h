@@ -34,6 +34,9 @@ class WindowFactors {
 
   void addPriors();
   void addCalibrationPriors(const CalibrationParams& params, const Pose& T_b_c_calibrated);
+  /// Ties position and yaw of the oldest frame to what they are: the four directions that no measurement sees. Without
+  /// it a solve may turn the whole window, and the causal trajectory would jump. Never marginalised.
+  void addGauge();
   void addImu();
   void addRest(double velocity_sigma);
   void addPoints();

@@ -53,10 +53,7 @@ Eigen::Quaterniond rotationBetween(const Eigen::Vector3d& from, const Eigen::Vec
   return Eigen::Quaterniond::FromTwoVectors(from, to).normalized();
 }
 
-double yawOf(const Eigen::Quaterniond& R_w_b) {
-  const Eigen::Vector3d x_w = R_w_b * Eigen::Vector3d::UnitX();
-  return std::atan2(x_w.y(), x_w.x());
-}
+double yawOf(const Eigen::Quaterniond& R_w_b) { return 2.0 * std::atan2(R_w_b.z(), R_w_b.w()); }
 
 Eigen::Matrix<double, 3, 2> tangentBasis(const Eigen::Vector3d& direction) {
   const Eigen::Vector3d z = direction.normalized();

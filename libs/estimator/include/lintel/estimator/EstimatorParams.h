@@ -82,7 +82,7 @@ struct InitializerParams {
   int min_frames = 10;                   ///< window frames (estimator rate) before the first attempt
   int max_frames = 20;                   ///< older ones are dropped
   double min_parallax_px = 12;           ///< rotation-compensated, median, over the buffer; below: static or waiting
-  double max_error_px = 1.5;             ///< median reprojection error of an accepted start
+  double max_error_px = 2.0;             ///< median reprojection error of an accepted start
   double max_scale_sigma = 0.15;         ///< relative standard deviation of the scale of an accepted start
   double max_bias_accel = 1.5;           ///< [m/s^2]
   double bias_gyro_sigma = 0.1;          ///< prior [rad/s]
@@ -134,6 +134,7 @@ struct EstimatorParams {
   int keyframe_min_tracked = 20;         ///< fewer points shared with the last keyframe make a new one
   double max_keyframe_interval_s = 10;   ///< a keyframe at least this often, also at rest
   int max_iterations = 8;
+  int marginalisation = 0;
   double rest_disparity_px = 0.25;       ///< median motion between window frames below which rest is assumed
   double rest_velocity_sigma = 0.01;     ///< zero-velocity observation at rest [m/s]
   FactorParams factors;
@@ -150,6 +151,7 @@ struct EstimatorParams {
     field("keyframe_min_tracked", keyframe_min_tracked);
     field("max_keyframe_interval_s", max_keyframe_interval_s);
     field("max_iterations", max_iterations);
+    field("marginalisation", marginalisation);
     field("rest_disparity_px", rest_disparity_px);
     field("rest_velocity_sigma", rest_velocity_sigma);
     field("factors", factors);

@@ -24,7 +24,8 @@ Eigen::Matrix3d rightJacobianInverse(const Eigen::Vector3d& phi);
 /// The shortest rotation R with R * from ∥ to. Directions need not be unit vectors, but not be zero.
 Eigen::Quaterniond rotationBetween(const Eigen::Vector3d& from, const Eigen::Vector3d& to);
 
-/// Yaw of a rotation R_w_b about the world's z [rad]: the heading of the body's x axis.
+/// Yaw of a rotation R_w_b about the world's z [rad], in (-2 pi, 2 pi): the twist of its swing-twist decomposition.
+/// Well defined however the body is mounted, except upside down.
 double yawOf(const Eigen::Quaterniond& R_w_b);
 
 /// An orthonormal basis (3x2) of the plane perpendicular to `direction`; deterministic.
