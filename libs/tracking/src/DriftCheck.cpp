@@ -9,7 +9,7 @@ constexpr double kRotationSigma_rad = 1e-3;  ///< of the chained rotations of ha
 }  // namespace
 
 void DriftCheck::push(const std::vector<PointObservation>& points, const Eigen::Quaterniond& R_c1_c0) {
-  for (Entry& entry : entries_) entry.R_now_then = (R_c1_c0 * entry.R_now_then).normalized();
+  for (Entry& entry : entries_) entry.R_c_ct = (R_c1_c0 * entry.R_c_ct).normalized();
   entries_.push_back({points, Eigen::Quaterniond::Identity()});
   if (static_cast<int>(entries_.size()) > gap_frames_ + 1) entries_.pop_front();
 }
@@ -28,7 +28,7 @@ std::vector<TrackId> DriftCheck::drifting() const {
     paired.push_back(now.id);
   }
   const Eigen::Matrix3d information = Eigen::Matrix3d::Identity() / (kRotationSigma_rad * kRotationSigma_rad);
-  const TwoViewMotion motion = twoViewMotion(pairs, entries_.front().R_now_then, information, params_);
+  const TwoViewMotion motion = twoViewMotion(pairs, entries_.front().R_c_ct, information, params_);
   if (2 * static_cast<std::size_t>(motion.inliers) < pairs.size()) return ids;  // no motion explains most: no verdict
   for (std::size_t i = 0; i < paired.size(); ++i)
     if (!motion.inlier[i]) ids.push_back(paired[i]);

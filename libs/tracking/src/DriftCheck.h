@@ -26,7 +26,7 @@ class DriftCheck {
  private:
   struct Entry {
     std::vector<PointObservation> points;
-    Eigen::Quaterniond R_now_then;
+    Eigen::Quaterniond R_c_ct;  // ct: the camera at the time of the entry
   };
 
   int gap_frames_;
