@@ -13,7 +13,8 @@ namespace lintel {
 
 namespace {
 
-constexpr Rgb kFree{40, 110, 220}, kConstrained{230, 120, 20}, kDegenerate{150, 150, 150}, kNoGroup{140, 140, 140};
+// Seen on white, black, and the blue and grey backgrounds of MeshLab and SceneViewer3D.
+constexpr Rgb kFree{230, 80, 40}, kConstrained{20, 165, 160}, kDegenerate{150, 150, 150}, kNoGroup{140, 140, 140};
 
 // Neighbouring groups differ in hue; none is so light or dark that it is lost on white or black.
 constexpr std::array<Rgb, 10> kGroups{{{220, 50, 47},

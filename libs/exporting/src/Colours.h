@@ -18,7 +18,7 @@ struct Rgb {
   std::uint32_t packed() const { return std::uint32_t{r} << 16 | std::uint32_t{g} << 8 | b; }
 };
 
-constexpr Rgb kPointColour{120, 120, 120}, kKeyframeColour{30, 140, 60}, kTrajectoryColour{220, 60, 160};
+constexpr Rgb kPointColour{120, 120, 120}, kKeyframeColour{30, 140, 60}, kTrajectoryColour{90, 115, 235};
 
 /// A colour of the scale from low (dark violet) to high (yellow), `s` in [0, 1]; 32 steps, so that colour classes stay
 /// few.

@@ -47,7 +47,9 @@ struct Drawing {
   ExportSummary summary;                            ///< without files
 };
 
-/// Strokes of a camera's frustum of the given depth, in the world.
+/// Strokes of a camera's frustum of the given depth, in the world: kFrustumStrokes, the first from the eye; none if not
+/// finite.
+constexpr std::size_t kFrustumStrokes = 8;
 std::vector<DrawnSegment> frustumSegments(const Rig& rig, const Pose& T_w_b, double depth_m, Rgb colour);
 
 /// `params` must have style and layers set.

@@ -44,6 +44,23 @@ const Pose* firstPose(const LineMap& map) {
   return nullptr;
 }
 
+/// Frusta further apart than they are deep: a path full of them hides itself.
+Drawing withFewerFrusta(const Drawing& drawing) {
+  Drawing thinned = drawing;
+  for (DrawnPart& part : thinned.parts) {
+    if (part.layer != MapLayer::kKeyframes) continue;
+    std::vector<DrawnSegment> kept;
+    for (std::size_t i = 0; i + kFrustumStrokes <= part.segments.size(); i += kFrustumStrokes) {
+      const auto frustum = part.segments.begin() + static_cast<std::ptrdiff_t>(i);
+      const bool close =
+          !kept.empty() && (kept[kept.size() - kFrustumStrokes].start - frustum->start).norm() < 2 * drawing.frustum_m;
+      if (!close) kept.insert(kept.end(), frustum, frustum + kFrustumStrokes);
+    }
+    part.segments = std::move(kept);
+  }
+  return thinned;
+}
+
 /// The camera's own view without the strokes it stands in the middle of.
 Drawing withoutPath(const Drawing& drawing) {
   Drawing lines = drawing;
@@ -71,7 +88,8 @@ void drawFoot(const Drawing& drawing, cv::Mat foot) {
 
 }  // namespace
 
-OutputFiles pngFiles(const Drawing& drawing, const std::string& path) {
+OutputFiles pngFiles(const Drawing& whole, const std::string& path) {
+  const Drawing drawing = withFewerFrusta(whole);
   cv::Mat image(kAboveHeight + kBelowHeight + kFootHeight, kWidth, CV_8UC3, cv::Scalar(255, 255, 255));
   const cv::Rect above(0, 0, kWidth, kAboveHeight), left(0, kAboveHeight, kHalfWidth, kBelowHeight),
       right(kHalfWidth, kAboveHeight, kHalfWidth, kBelowHeight),
