@@ -120,7 +120,7 @@ TEST_F(MapFile, AnEmptyMapIsAFile) {
 TEST_F(MapFile, EveryTruncationIsRefused) {
   writeMap(sampleMap(), path_);
   const std::string whole = bytesOf(path_);
-  for (std::size_t size = 0; size < whole.size(); size += 13) {
+  for (std::size_t size = 0; size < whole.size(); size += 37) {
     put(path_, whole.substr(0, size));
     EXPECT_THROW(readMap(path_), MapFileError) << size;
   }
@@ -132,7 +132,7 @@ TEST_F(MapFile, EveryFlippedBitIsRefused) {
   writeMap(sampleMap(), path_);
   const std::string whole = bytesOf(path_);
   std::mt19937 random(3);
-  for (int i = 0; i < 1500; ++i) {
+  for (int i = 0; i < 500; ++i) {
     std::string mutated = whole;
     const std::size_t at = i < 200 ? static_cast<std::size_t>(i) % whole.size() : random() % whole.size();
     mutated[at] = static_cast<char>(mutated[at] ^ (1 << random() % 8));
@@ -161,7 +161,7 @@ TEST_F(MapFile, MutationsWithRightChecksumsNeverCrash) {
   ASSERT_EQ(withRightChecksums(whole), whole);
   std::mt19937 random(5);
   int refused = 0;
-  for (int i = 0; i < 3000; ++i) {
+  for (int i = 0; i < 800; ++i) {
     std::string mutated = whole;
     const std::uint32_t changes = 1 + random() % 4;
     for (std::uint32_t k = 0; k < changes; ++k) {
@@ -178,7 +178,7 @@ TEST_F(MapFile, MutationsWithRightChecksumsNeverCrash) {
       ++refused;
     }
   }
-  EXPECT_GT(refused, 100);
+  EXPECT_GT(refused, 30);
 }
 
 TEST_F(MapFile, UnknownSectionsAreSkipped) {
