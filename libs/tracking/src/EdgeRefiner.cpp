@@ -15,6 +15,7 @@ constexpr float kMinGradient = 32 * 2.0f;  ///< 2 grey levels a pixel, in units 
 constexpr double kInlier_px = 0.8;         ///< of a sample's edge from the fitted line
 constexpr double kMinSupport = 0.5;
 constexpr double kFloor_px = 0.25;  ///< systematic: blur, sampling, lens model
+constexpr double kBlur_px = 1;      ///< a blurred edge is predicted that much worse
 constexpr int kMaxReach = 8;        ///< profiles reach this far at most
 
 /// Edge candidates across the line at one place along it.
@@ -76,8 +77,8 @@ void dropWeak(std::vector<Sample>& samples, double length) {
       --sample.candidates;
 }
 
-std::vector<Sample> sampleProfiles(const LineCamera& camera, const cv::Mat& derivative, const ImageLine& line,
-                                   int reach, double grow_px) {
+std::vector<Sample> sampleProfiles(const LineCamera& camera, const cv::Mat& derivative, double scale,
+                                   const ImageLine& line, int reach, double grow_px) {
   std::vector<Sample> samples;
   const Eigen::Vector2d d = line.direction(), n = line.normal();
   const double step_px = std::max(kStep_px, line.length() / kMaxSteps);
@@ -91,12 +92,15 @@ std::vector<Sample> sampleProfiles(const LineCamera& camera, const cv::Mat& deri
     const Eigen::Vector2d u = line.start + sample.s * d;
     if (!camera.mayBeSeen(u)) continue;
     const Eigen::Vector2d px = camera.toImage(u), step = camera.imageJacobian(u) * n;
-    if (!camera.camera().contains(px, reach + 3)) continue;
-    const double scale = 1.0 / step.norm();
+    const double stride = step.norm();
+    if (!camera.camera().contains(px, scale * ((reach + 1) * std::max(stride, 1.0) + 2))) continue;
+    const Eigen::Vector2d centre = px / scale,
+                          unit = step / stride;  // in pixels of the level; there a step is scale px
     for (int k = -reach - 1; k <= reach + 1; ++k)
       profile[static_cast<std::size_t>(k + reach + 1)] =
-          gradientAlong(derivative, px.x() + k * step.x(), px.y() + k * step.y(), scale * step.x(), scale * step.y());
+          gradientAlong(derivative, centre.x() + k * step.x(), centre.y() + k * step.y(), unit.x(), unit.y());
     findPeaks(profile, reach, sample);
+    for (double& offset : sample.offset) offset *= scale;
     samples.push_back(sample);
   }
   dropWeak(samples, line.length());
@@ -149,12 +153,12 @@ Fit vote(const std::vector<Sample>& samples, double length, double search_px) {
 }
 
 /// Least squares over the candidates near the line, repeated; returns their root mean square distance.
-double leastSquares(std::vector<Sample>& samples, Fit& fit) {
+double leastSquares(std::vector<Sample>& samples, Fit& fit, double tolerance_px) {
   double rms = 0;
   for (int iteration = 0; iteration < 3; ++iteration) {
     double n = 0, ss = 0, sss = 0, so = 0, sso = 0;
     for (Sample& sample : samples) {
-      sample.inlier = std::abs(nearest(sample, fit, sample.fitted)) < kInlier_px;
+      sample.inlier = std::abs(nearest(sample, fit, sample.fitted)) < tolerance_px;
       if (!sample.inlier) continue;
       n += 1;
       ss += sample.s;
@@ -193,16 +197,24 @@ int growFrom(const std::vector<Sample>& samples, int at, int step) {
 
 }  // namespace
 
-std::optional<RefinedLine> EdgeRefiner::refine(const cv::Mat& derivative, const ImageLine& line, double search_px,
+std::optional<RefinedLine> EdgeRefiner::refine(const ImagePyramid& pyramid, const ImageLine& line, double search_px,
                                                double grow_px) const {
-  const int reach = std::min(static_cast<int>(std::ceil(search_px)), kMaxReach);
+  if (auto sharp = refineAtLevel(pyramid, 0, line, search_px, grow_px)) return sharp;
+  if (pyramid.levels() < 2) return std::nullopt;
+  return refineAtLevel(pyramid, 1, line, search_px + kBlur_px, grow_px);
+}
+
+std::optional<RefinedLine> EdgeRefiner::refineAtLevel(const ImagePyramid& pyramid, int level, const ImageLine& line,
+                                                      double search_px, double grow_px) const {
+  const double scale = 1 << level;
+  const int reach = std::min(static_cast<int>(std::ceil(search_px / scale)), kMaxReach);
   const double length = line.length();
   if (length < 4 * kStep_px) return std::nullopt;
-  std::vector<Sample> samples = sampleProfiles(camera_, derivative, line, reach, grow_px);
+  std::vector<Sample> samples = sampleProfiles(camera_, pyramid.derivative(level), scale, line, reach, grow_px);
   if (samples.size() < 5) return std::nullopt;
   Fit fit = vote(samples, length, search_px);
-  const double rms = leastSquares(samples, fit);
-  if (rms > kInlier_px) return std::nullopt;
+  const double rms = leastSquares(samples, fit, kInlier_px * scale);
+  if (rms > kInlier_px * scale) return std::nullopt;
 
   // The part of the samples on the given segment decides; what lies beyond may only be added to it.
   int own_first = 0, own_last = static_cast<int>(samples.size()) - 1;
@@ -224,7 +236,7 @@ std::optional<RefinedLine> EdgeRefiner::refine(const cv::Mat& derivative, const 
   refined.line = {pointAt(samples[static_cast<std::size_t>(first)].s),
                   pointAt(samples[static_cast<std::size_t>(last)].s)};
   // The ends of a fitted line vary twice as much as its middle.
-  refined.sigma_px = std::hypot(kFloor_px, 2 * rms / std::sqrt(static_cast<double>(seen)));
+  refined.sigma_px = std::hypot(kFloor_px * scale, 2 * rms / std::sqrt(static_cast<double>(seen)));
   return refined;
 }
 

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "ImageLine.h"
+#include "ImagePyramid.h"
 
 namespace lintel {
 
@@ -23,16 +24,20 @@ class EdgeRefiner {
  public:
   explicit EdgeRefiner(const LineCamera& camera) : camera_(camera) {}
 
-  /// Samples profiles of `derivative` (int16 dx dy, 32 times the gradient) across `line` up to `search_px` to both
-  /// sides, fits the line robustly in undistorted coordinates, trims ends that have no edge and grows by up to
-  /// `grow_px` where the edge goes on. Empty when less than half of the line lies on an edge.
-  std::optional<RefinedLine> refine(const cv::Mat& derivative, const ImageLine& line, double search_px,
+  /// Samples profiles of the current image's derivative across `line` up to `search_px` to both sides, fits the line
+  /// robustly in undistorted coordinates, trims ends that have no edge and grows by up to `grow_px` where the edge goes
+  /// on. An edge that full resolution does not show (motion blur) is looked for at half. Empty when less than half of
+  /// the line lies on an edge.
+  std::optional<RefinedLine> refine(const ImagePyramid& pyramid, const ImageLine& line, double search_px,
                                     double grow_px) const;
 
   /// Turns `line` so that its normal points to the brighter side; empty when the contrast is not of one sign.
   std::optional<ImageLine> orient(const cv::Mat& derivative, const ImageLine& line) const;
 
  private:
+  std::optional<RefinedLine> refineAtLevel(const ImagePyramid& pyramid, int level, const ImageLine& line,
+                                           double search_px, double grow_px) const;
+
   const LineCamera& camera_;
 };
 

@@ -10,7 +10,6 @@ namespace lintel {
 namespace {
 
 constexpr double kSupportWithoutFlow = 0.7;  ///< an edge found without optical flow must be a clear one
-constexpr double kApart_px = 1.0;            ///< a frame: lines that differ by this lie at different depths
 constexpr double kSupportOfNew = 0.7;        ///< new lines are chosen, old ones are kept
 
 }  // namespace
@@ -99,7 +98,7 @@ void FlowLineTracker::refine(const ImagePyramid& pyramid, LineStatistics& statis
   for (Track& track : tracks_) {
     // Without flow the prediction is worse, and the edge may lie further off.
     const double search_px = track.by_flow ? params_.refine_px : params_.refine_px + 2;
-    const auto refined = refiner_.refine(pyramid.derivative(), track.line, search_px, params_.grow_px);
+    const auto refined = refiner_.refine(pyramid, track.line, search_px, params_.grow_px);
     if (!refined || refined->line.length() < params_.keep_length_px ||
         (!track.by_flow && refined->support < kSupportWithoutFlow)) {
       end(track, statistics.lost_edge, statistics);
@@ -116,15 +115,10 @@ void FlowLineTracker::refine(const ImagePyramid& pyramid, LineStatistics& statis
     }
     track.line = *clipped;
     track.motion = normalMotion(track.turned, track.line);
-    track.steady_motion = track.steady_motion ? 0.7 * *track.steady_motion + 0.3 * *track.motion : *track.motion;
     track.sigma_px = refined->sigma_px;
     kept.push_back(track);
   }
   tracks_ = std::move(kept);
-}
-
-bool FlowLineTracker::moveApart(const Track& a, const Track& b) {
-  return a.steady_motion && b.steady_motion && (*a.steady_motion - *b.steady_motion).cwiseAbs().maxCoeff() > kApart_px;
 }
 
 void FlowLineTracker::dropDuplicates(LineStatistics& statistics) {
@@ -133,8 +127,6 @@ void FlowLineTracker::dropDuplicates(LineStatistics& statistics) {
     for (std::size_t j = i + 1; j < tracks_.size() && !dropped[i]; ++j) {
       if (dropped[j] || !merger_.duplicates(tracks_[i].line, tracks_[j].line)) continue;
       dropped[j] = 1;  // the younger one
-      // Two edges at different depths that cross in the image: who is who afterwards, nobody knows.
-      if (moveApart(tracks_[i], tracks_[j])) dropped[i] = 1;
     }
   std::vector<Track> kept;
   for (std::size_t i = 0; i < tracks_.size(); ++i) {
@@ -150,7 +142,7 @@ void FlowLineTracker::addNew(const ImagePyramid& pyramid, const std::vector<Imag
   for (const ImageLine& candidate : fresh) {  // longest first
     if (static_cast<int>(tracks_.size()) >= params_.max_lines) return;
     if (candidate.length() < params_.min_length_px) continue;
-    const auto refined = refiner_.refine(pyramid.derivative(), candidate, params_.refine_px, params_.grow_px);
+    const auto refined = refiner_.refine(pyramid, candidate, params_.refine_px, params_.grow_px);
     if (!refined || refined->support < kSupportOfNew) continue;
     const auto clipped = camera_.clip(refined->line, params_.border_px);
     if (!clipped || clipped->length() < params_.min_length_px) continue;

@@ -24,9 +24,8 @@ class FlowLineTracker : public LineTracker {
   struct Track {
     TrackId id = 0;  ///< 0: not published yet
     ImageLine line;
-    ImageLine turned;                              ///< its last place, turned into this frame
-    std::optional<Eigen::Vector2d> motion;         ///< of its ends beyond the rotation, see CarriedLine
-    std::optional<Eigen::Vector2d> steady_motion;  ///< its running mean
+    ImageLine turned;                       ///< its last place, turned into this frame
+    std::optional<Eigen::Vector2d> motion;  ///< of its ends beyond the rotation, see CarriedLine
     double sigma_px = 1;
     int length = 0;      ///< frames in which it was published
     int sightings = 1;   ///< frames in which the detector saw it
@@ -39,7 +38,6 @@ class FlowLineTracker : public LineTracker {
                LineStatistics& statistics);
   std::vector<ImageLine> mergeDetections(const ImagePyramid& pyramid, FrontEndStatistics& statistics);
   void refine(const ImagePyramid& pyramid, LineStatistics& statistics);
-  static bool moveApart(const Track& a, const Track& b);
   void dropDuplicates(LineStatistics& statistics);
   void addNew(const ImagePyramid& pyramid, const std::vector<ImageLine>& fresh);
   void publish(LineStatistics& statistics);

@@ -28,6 +28,7 @@ class ImagePyramid {
   const cv::Mat& image(int level = 0) const { return current()[2 * static_cast<std::size_t>(level)]; }
   /// Scharr derivatives (int16 dx, dy) of a level, 32 times the grey levels per pixel.
   const cv::Mat& derivative(int level = 0) const { return current()[2 * static_cast<std::size_t>(level) + 1]; }
+  int windowPx() const { return window_px_; }
   int levels() const { return static_cast<int>(current().size() / 2); }
 
  private:

@@ -14,7 +14,7 @@ namespace {
 constexpr double kMinEigenvalue = 1e-6;  ///< a patch on a plain edge has nearly none along it, and is welcome
 constexpr double kSpacing_px = 15;       ///< between samples, when the line is neither short nor long
 constexpr double kFitTolerance_px = 1.5;
-constexpr double kNear_px = 120;
+constexpr float kNear_px = 20;          ///< points nearer than this weigh alike
 constexpr double kMaxSurprise_px = 40;  ///< flow further than this from the guess is a mistake
 
 double median(std::vector<double> values) {
@@ -43,18 +43,21 @@ ImageLine carryEnds(const ImageLine& guess, const RobustLine& fit, const std::ve
 
 }  // namespace
 
-cv::Point2f residualNear(const cv::Point2f& px, const std::vector<PointFlow>& points) {
-  cv::Point2f sum(0, 0);
-  float weights = 0;
+NearbyMotion motionNear(const cv::Point2f& px, const std::vector<PointFlow>& points) {
+  NearbyMotion sum;
+  float residuals = 0, changes = 0;
   for (const PointFlow& point : points) {
     const cv::Point2f away = point.px - point.residual - px;  // compared where both are predicted to be
-    const float squared = away.dot(away);
-    if (squared > kNear_px * kNear_px) continue;
-    const float weight = 1.0f / (squared + 100.0f);
-    sum += weight * point.residual;
-    weights += weight;
+    const float weight = 1.0f / ((away.dot(away) + kNear_px * kNear_px) * (away.dot(away) + kNear_px * kNear_px));
+    sum.residual += weight * point.residual;
+    residuals += weight;
+    if (!point.change) continue;
+    sum.change += weight * *point.change;
+    changes += weight;
   }
-  return weights > 0 ? sum * (1.0f / weights) : sum;
+  if (residuals > 0) sum.residual *= 1.0f / residuals;
+  if (changes > 0) sum.change *= 1.0f / changes;
+  return sum;
 }
 
 Eigen::Vector2d normalMotion(const ImageLine& turned, const ImageLine& line) {
@@ -81,12 +84,12 @@ LineFlow::Samples LineFlow::sample(const std::vector<CarriedLine>& lines, const 
     const auto turnedAt = [&](double share) {
       return turnedPixel(camera_.camera(), gyro.R_c1_c0(), carried.line.at(share) / camera_.focal());
     };
-    Eigen::Vector2d at_start = toEigen(residualNear(turnedAt(0.1), points));
-    Eigen::Vector2d at_end = toEigen(residualNear(turnedAt(0.9), points));
+    const NearbyMotion near_start = motionNear(turnedAt(0.1), points), near_end = motionNear(turnedAt(0.9), points);
+    Eigen::Vector2d at_start = toEigen(near_start.residual), at_end = toEigen(near_end.residual);
     if (carried.motion) {  // across the line its own motion is known better than that of the points nearby
       const Eigen::Vector2d n = turned.normal();
-      at_start += n * (carried.motion->x() - n.dot(at_start));
-      at_end += n * (carried.motion->y() - n.dot(at_end));
+      at_start += n * (carried.motion->x() + n.dot(toEigen(near_start.change) - at_start));
+      at_end += n * (carried.motion->y() + n.dot(toEigen(near_end.change) - at_end));
     }
     samples.turned.push_back(turned);
     samples.guessed.push_back({turned.start + at_start, turned.end + at_end});
@@ -105,7 +108,7 @@ LineFlow::Samples LineFlow::sample(const std::vector<CarriedLine>& lines, const 
   return samples;
 }
 
-PredictedLine LineFlow::fit(const Samples& samples, std::size_t index, bool has_motion,
+PredictedLine LineFlow::fit(const Samples& samples, std::size_t index, double jump_px,
                             const std::vector<cv::Point2f>& to, const std::vector<unsigned char>& found) const {
   std::vector<Eigen::Vector2d> guessed_u, found_u;
   for (std::size_t i = samples.first[index]; i < samples.first[index + 1]; ++i) {
@@ -121,10 +124,26 @@ PredictedLine LineFlow::fit(const Samples& samples, std::size_t index, bool has_
   if (!robust) return result;
   const ImageLine carried = carryEnds(guess, *robust, guessed_u, found_u);
   // Among parallel stripes flow may lock onto a neighbour. A line with a history does not jump.
-  if (has_motion && normalMotion(guess, carried).cwiseAbs().maxCoeff() > params_.max_jump_px) return result;
+  if (normalMotion(guess, carried).cwiseAbs().maxCoeff() > jump_px) return result;
   result.line = carried;
   result.by_flow = true;
   return result;
+}
+
+std::vector<PredictedLine> LineFlow::follow(const std::vector<CarriedLine>& lines, const ImagePyramid& pyramid,
+                                            const GyroPrediction& gyro, const std::vector<PointFlow>& points,
+                                            const Reach& reach) const {
+  const Samples samples = sample(lines, gyro, points);
+  std::vector<cv::Point2f> to = samples.guess;
+  std::vector<unsigned char> found;
+  const cv::TermCriteria criteria(cv::TermCriteria::COUNT | cv::TermCriteria::EPS, params_.max_iterations, 0.03);
+  cv::calcOpticalFlowPyrLK(pyramid.previous(), pyramid.current(), samples.from, to, found, cv::noArray(),
+                           cv::Size(reach.window_px, reach.window_px), std::min(reach.levels, pyramid.levels()) - 1,
+                           criteria, cv::OPTFLOW_USE_INITIAL_FLOW, kMinEigenvalue);
+  std::vector<PredictedLine> followed;
+  for (std::size_t i = 0; i < lines.size(); ++i)
+    followed.push_back(fit(samples, i, lines[i].motion ? reach.jump_px : kMaxSurprise_px, to, found));
+  return followed;
 }
 
 std::vector<std::optional<PredictedLine>> LineFlow::predict(const std::vector<CarriedLine>& lines,
@@ -132,16 +151,24 @@ std::vector<std::optional<PredictedLine>> LineFlow::predict(const std::vector<Ca
                                                             const std::vector<PointFlow>& points) const {
   std::vector<std::optional<PredictedLine>> predicted(lines.size());
   if (lines.empty()) return predicted;
-  const Samples samples = sample(lines, gyro, points);
-  std::vector<cv::Point2f> to = samples.guess;
-  std::vector<unsigned char> found;
-  const cv::TermCriteria criteria(cv::TermCriteria::COUNT | cv::TermCriteria::EPS, params_.max_iterations, 0.03);
-  cv::calcOpticalFlowPyrLK(pyramid.previous(), pyramid.current(), samples.from, to, found, cv::noArray(),
-                           cv::Size(params_.window_px, params_.window_px),
-                           std::min(params_.flow_levels, pyramid.levels()) - 1, criteria, cv::OPTFLOW_USE_INITIAL_FLOW,
-                           kMinEigenvalue);
+  std::vector<PredictedLine> followed =
+      follow(lines, pyramid, gyro, points, {params_.window_px, params_.flow_levels, params_.max_jump_px});
+
+  // The few that were not found are looked for again from further away: jerks and motion blur.
+  std::vector<CarriedLine> again;
+  std::vector<std::size_t> index;
+  for (std::size_t i = 0; i < lines.size(); ++i)
+    if (!followed[i].by_flow) {
+      again.push_back(lines[i]);
+      index.push_back(i);
+    }
+  if (!again.empty()) {
+    const Reach further{std::max(params_.window_px, pyramid.windowPx()), pyramid.levels(), 2 * params_.max_jump_px};
+    const std::vector<PredictedLine> second = follow(again, pyramid, gyro, points, further);
+    for (std::size_t k = 0; k < index.size(); ++k) followed[index[k]] = second[k];
+  }
   for (std::size_t i = 0; i < lines.size(); ++i) {
-    PredictedLine result = fit(samples, i, lines[i].motion.has_value(), to, found);
+    PredictedLine& result = followed[i];
     if (!result.line.start.allFinite() || !result.line.end.allFinite()) continue;
     const auto clipped = camera_.clip(result.line, params_.border_px);
     if (!clipped) continue;

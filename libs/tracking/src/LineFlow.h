@@ -13,11 +13,12 @@
 
 namespace lintel {
 
-/// A line of the frame before. `motion_*`: how far its ends moved along its normal in the last step, beyond what the
-/// camera's rotation explains [px]; empty for a new line. Bodies have inertia: the next step is much like the last.
+/// A line of the frame before. `motion`: how far its start and end moved along its normal in the last step, beyond what
+/// the camera's rotation explains [px]; empty for a new line. Bodies have inertia: the line's next step is its last
+/// one, plus what the points nearby say has changed.
 struct CarriedLine {
   ImageLine line;
-  std::optional<Eigen::Vector2d> motion;  ///< at start, at end
+  std::optional<Eigen::Vector2d> motion;
 };
 
 /// A line carried into the current frame.
@@ -44,10 +45,18 @@ class LineFlow {
     std::vector<cv::Point2f> from, guess;    ///< image pixels
     std::vector<ImageLine> turned, guessed;  ///< per line: by the rotation alone, and with the expected motion
   };
+  /// How far optical flow looks.
+  struct Reach {
+    int window_px, levels;
+    double jump_px;  ///< largest distance from where a line with a history is expected
+  };
+  std::vector<PredictedLine> follow(const std::vector<CarriedLine>& lines, const ImagePyramid& pyramid,
+                                    const GyroPrediction& gyro, const std::vector<PointFlow>& points,
+                                    const Reach& reach) const;
   Samples sample(const std::vector<CarriedLine>& lines, const GyroPrediction& gyro,
                  const std::vector<PointFlow>& points) const;
 
-  PredictedLine fit(const Samples& samples, std::size_t index, bool has_motion, const std::vector<cv::Point2f>& to,
+  PredictedLine fit(const Samples& samples, std::size_t index, double jump_px, const std::vector<cv::Point2f>& to,
                     const std::vector<unsigned char>& found) const;
   ImageLine turnedLine(const ImageLine& line, const GyroPrediction& gyro) const;
 
@@ -58,7 +67,11 @@ class LineFlow {
 /// Motion along the normal of `turned` that brings its ends onto the infinite `line` (start, end) [px].
 Eigen::Vector2d normalMotion(const ImageLine& turned, const ImageLine& line);
 
-/// Mean motion of the tracked points near `px` beyond the rotation, nearer ones weighing more; zero without any.
-cv::Point2f residualNear(const cv::Point2f& px, const std::vector<PointFlow>& points);
+/// What the tracked points near `px` did beyond the rotation, nearer ones weighing more; zero without any.
+struct NearbyMotion {
+  cv::Point2f residual{0, 0};  ///< mean of PointFlow::residual
+  cv::Point2f change{0, 0};    ///< mean of PointFlow::change
+};
+NearbyMotion motionNear(const cv::Point2f& px, const std::vector<PointFlow>& points);
 
 }  // namespace lintel

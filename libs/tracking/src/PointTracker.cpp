@@ -125,13 +125,18 @@ void PointTracker::rejectCrowded(Followed& followed, PointStatistics& statistics
 
 void PointTracker::accept(const Followed& followed, const GyroPrediction& gyro, PointStatistics& statistics) {
   std::vector<PointObservation> kept;
+  std::map<TrackId, cv::Point2f> residuals;
   for (std::size_t i = 0; i < points_.size(); ++i) {
     if (!followed.alive[i]) {
       statistics.lifetimes.add(points_[i].track_length);
       continue;
     }
     PointObservation p = points_[i];
-    flow_.push_back({followed.px[i], followed.px[i] - turnedPixel(camera_, gyro.R_c1_c0(), p.normalised)});
+    PointFlow flow{followed.px[i], followed.px[i] - turnedPixel(camera_, gyro.R_c1_c0(), p.normalised), std::nullopt};
+    if (const auto before = residuals_.find(p.id); before != residuals_.end())
+      flow.change = flow.residual - before->second;
+    residuals[p.id] = flow.residual;
+    flow_.push_back(flow);
     p.px = {followed.px[i].x, followed.px[i].y};
     p.normalised = camera_.normalise(p.px);
     ++p.track_length;
@@ -139,6 +144,7 @@ void PointTracker::accept(const Followed& followed, const GyroPrediction& gyro, 
   }
   statistics.tracked += static_cast<std::int64_t>(kept.size());
   points_ = std::move(kept);
+  residuals_ = std::move(residuals);
 }
 
 void PointTracker::rejectDrifting(const GyroPrediction& gyro, PointStatistics& statistics) {

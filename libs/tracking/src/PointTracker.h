@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <map>
 #include <opencv2/core.hpp>
+#include <optional>
 #include <vector>
 
 #include "CornerDetector.h"
@@ -18,8 +20,9 @@ namespace lintel {
 
 /// A point that was followed into the current frame: what it did, for those who follow other things.
 struct PointFlow {
-  cv::Point2f px;        ///< in the current frame
-  cv::Point2f residual;  ///< flow beyond what the rotation explains
+  cv::Point2f px;                     ///< in the current frame
+  cv::Point2f residual;               ///< flow beyond what the rotation explains
+  std::optional<cv::Point2f> change;  ///< of the residual against that of the step before; empty for a new point
 };
 
 /// KLT tracks of corners from frame to frame. A point lost is lost: no re-detection under the old identity.
@@ -55,6 +58,7 @@ class PointTracker {
   DriftCheck drift_;
   std::vector<PointObservation> points_;
   std::vector<PointFlow> flow_;
+  std::map<TrackId, cv::Point2f> residuals_;  ///< of the last step
   TrackId next_id_ = 1;
   int frames_since_detection_ = 0;
 };

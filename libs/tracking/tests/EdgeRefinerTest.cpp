@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
 #include "ImagePyramid.h"
 #include "TestImages.h"
 
@@ -38,7 +40,7 @@ TEST_F(EdgeRefinerTest, laysALineOnTheEdgeThroughTheLens) {
   ImageLine guess{focal * (on_edge + 0.1 * d), focal * (on_edge + 0.9 * d)};
   guess.start.y() += 2.0;  // px
   guess.end.y() -= 1.0;
-  const auto refined = refiner_.refine(pyramid_.derivative(), guess, 3, 0);
+  const auto refined = refiner_.refine(pyramid_, guess, 3, 0);
   ASSERT_TRUE(refined);
   for (const Eigen::Vector2d& end : {refined->line.start, refined->line.end})
     EXPECT_LT(std::abs(up.dot(end - focal * on_edge)), 0.15);
@@ -49,22 +51,35 @@ TEST_F(EdgeRefinerTest, laysALineOnTheEdgeThroughTheLens) {
 TEST_F(EdgeRefinerTest, doesNotTakeTheEdgeOfOppositeContrast) {
   show(testing::strips({strip_}));
   // Reversed: the bright side would have to be above the upper edge.
-  EXPECT_FALSE(refiner_.refine(pyramid_.derivative(), line(0.4, -0.234, -0.4, -0.266), 3, 0));
+  EXPECT_FALSE(refiner_.refine(pyramid_, line(0.4, -0.234, -0.4, -0.266), 3, 0));
 }
 
 TEST_F(EdgeRefinerTest, trimsWhatHasNoEdgeAndGrowsAlongTheEdge) {
   show(testing::strips({strip_}));
-  const auto trimmed = refiner_.refine(pyramid_.derivative(), line(-0.66, -0.2764, 0.2, -0.242), 3, 0);
+  const auto trimmed = refiner_.refine(pyramid_, line(-0.66, -0.2764, 0.2, -0.242), 3, 0);
   ASSERT_TRUE(trimmed);
   EXPECT_NEAR(trimmed->line.start.x() / camera_.focal(), -0.5, 0.03);
-  const auto grown = refiner_.refine(pyramid_.derivative(), line(-0.2, -0.258, 0.2, -0.242), 3, 24);
+  const auto grown = refiner_.refine(pyramid_, line(-0.2, -0.258, 0.2, -0.242), 3, 24);
   ASSERT_TRUE(grown);
   EXPECT_NEAR(grown->line.length() - 0.4 * camera_.focal(), 48, 8);
 }
 
+TEST_F(EdgeRefinerTest, findsABlurredEdgeAtHalfResolution) {
+  // A faint ramp 12 px wide: at full resolution nowhere steeper than the 2 grey levels a pixel that an edge needs.
+  const double focal = camera_.focal();
+  show([&](const Eigen::Vector2d& x) {
+    const double t = std::clamp((x.y() + 0.15) * focal / 12, 0.0, 1.0);
+    return 80 + 14 * t * t * (3 - 2 * t);
+  });
+  const auto refined = refiner_.refine(pyramid_, line(-0.4, -0.125, 0.4, -0.125), 3, 0);
+  ASSERT_TRUE(refined);
+  EXPECT_NEAR(0.5 * (refined->line.start.y() + refined->line.end.y()), focal * -0.15 + 6, 1.0);
+  EXPECT_GT(refined->sigma_px, 0.45);  // says that it is not as sure
+}
+
 TEST_F(EdgeRefinerTest, findsNothingOnAPlainImage) {
   show([](const Eigen::Vector2d&) { return 100.0; });
-  EXPECT_FALSE(refiner_.refine(pyramid_.derivative(), line(-0.3, 0, 0.3, 0), 3, 0));
+  EXPECT_FALSE(refiner_.refine(pyramid_, line(-0.3, 0, 0.3, 0), 3, 0));
 }
 
 TEST_F(EdgeRefinerTest, turnsTheNormalToTheBrighterSide) {

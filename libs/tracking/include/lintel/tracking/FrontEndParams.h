@@ -68,7 +68,7 @@ struct LineTrackerParams {
   int max_iterations = 6;                 ///< of their KLT, per level
   int min_samples = 5;                    ///< on a short line
   int max_samples = 6;                    ///< on a long line
-  double max_jump_px = 5;         ///< optical flow further than this from a line's steady motion is not believed
+  double max_jump_px = 8;         ///< optical flow further than this from a line's steady motion is not believed
   double refine_px = 3;           ///< how far from the prediction the edge is searched
   double grow_px = 16;            ///< how far a line may grow along its edge in one frame, at each end
   double merge_angle_rad = 0.07;  ///< largest angle between a prediction and a detection of the same line
