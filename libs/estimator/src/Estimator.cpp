@@ -73,7 +73,6 @@ class Estimator::Impl {
   bool tracking_ = false;
   std::uint64_t frames_seen_ = 0;
   FrameId next_frame_id_ = 0;
-  FrameTracks tracks_before_;               // of the frame before, for image velocities
   ImuBatch pending_imu_;                    // since the newest window frame
   std::int64_t newest_t_ns_ = 0;
   int frames_without_points_ = 0;
@@ -93,7 +92,6 @@ WindowUpdate Estimator::Impl::process(const FrameTracks& tracks, const ImuBatch&
     addFrame(tracks);
     tracking_ ? track(update) : initialise(update);
   }
-  tracks_before_ = tracks;
   return update;
 }
 
@@ -136,7 +134,8 @@ void Estimator::Impl::addFrame(const FrameTracks& tracks) {
   }
   pending_imu_.erase(pending_imu_.begin(), pending_imu_.empty() ? pending_imu_.end() : pending_imu_.end() - 1);
   newest_t_ns_ = tracks.t_ns;
-  window_.addFrame(std::move(frame), tracks, FeatureVelocities(tracks_before_, tracks));
+  if (!pending_imu_.empty()) frame.gyro = pending_imu_.back().gyro;
+  window_.addFrame(std::move(frame), tracks);
 }
 
 void Estimator::Impl::initialise(WindowUpdate& update) {
@@ -204,6 +203,8 @@ void Estimator::Impl::solve(WindowUpdate& update) {
   rejectOutliers(window_, params_.landmarks);
   for (auto& [id, track] : window_.lines)
     if (track.triangulated && !track.degenerate) updateLineUncertainty(window_, params_, track);
+  for (auto& [id, track] : window_.points)
+    if (track.triangulated) updatePointUncertainty(window_, params_.factors.point_sigma_px, track);
   for (std::size_t i = 1; i < window_.frames.size(); ++i) {
     WindowFrame& frame = window_.frames[i];
     const ImuBias bias = biasOf(window_.frames[i - 1].motion.data());

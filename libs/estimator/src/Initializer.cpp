@@ -195,7 +195,7 @@ double Initializer::relativeScaleSigma(SlidingWindow& window) const {
   std::set<BlockKey> landmarks;
   for (const Factor& factor : factors.factors())
     for (const BlockKey& key : factor.blocks)
-      if (key.kind == BlockKey::kDepth) landmarks.insert(key);
+      if (key.kind == BlockKey::kPoint) landmarks.insert(key);
   const auto prior = marginalise(window, factors.factors(), landmarks);
   if (!prior) return std::numeric_limits<double>::infinity();
 

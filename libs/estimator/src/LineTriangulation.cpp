@@ -27,7 +27,7 @@ LineNormal normalEquations(const SlidingWindow& window, const FactorParams& para
   RowMajorMatrix plus(kLineSize, kLineTangent);
   LineManifold().PlusJacobian(line.data(), plus.data());
   for (const LineSighting& s : track.sightings) {
-    const LineFactor factor(s.start, s.end, track.origin_w,
+    const LineFactor factor(s.start, s.end, window.frame(s.frame).bodyMotion(), track.origin_w,
                             window.camera().meanFocal() / (params.line_sigma_px * s.sigma_px));
     const double* blocks[] = {window.frame(s.frame).pose.data(), window.extrinsics.data(), window.correction.data(),
                               line.data()};
@@ -122,7 +122,8 @@ double lineError(const SlidingWindow& window, const LineTrack& track) {
   Eigen::Vector3d ends[2];
   for (const LineSighting& s : track.sightings) {
     if (!endsInCamera(window, track, s, ends)) return std::numeric_limits<double>::infinity();
-    const LineFactor factor(s.start, s.end, track.origin_w, window.camera().meanFocal());
+    const LineFactor factor(s.start, s.end, window.frame(s.frame).bodyMotion(), track.origin_w,
+                            window.camera().meanFocal());
     const double* blocks[] = {window.frame(s.frame).pose.data(), window.extrinsics.data(), window.correction.data(),
                               track.line.data()};
     Eigen::Vector2d r;

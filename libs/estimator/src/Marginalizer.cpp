@@ -89,7 +89,7 @@ NormalEquations linearise(SlidingWindow& window, const std::vector<Factor>& fact
   NormalEquations eq;
   const auto append = [&](bool wanted_first, bool wanted_landmark) {
     for (const BlockKey& key : all) {
-      const bool landmark = key.kind == BlockKey::kDepth || key.kind == BlockKey::kLine;
+      const bool landmark = key.kind == BlockKey::kPoint || key.kind == BlockKey::kLine;
       if ((first.count(key) > 0) == wanted_first && (!wanted_first || landmark == wanted_landmark))
         eq.blocks.push_back(key);
     }
@@ -129,7 +129,7 @@ std::optional<WindowPrior> marginalise(SlidingWindow& window, const std::vector<
   Eigen::Index others_at = -1;
   for (; kept < eq.blocks.size() && dropped.count(eq.blocks[kept]) > 0; ++kept) {
     const BlockKey::Kind kind = eq.blocks[kept].kind;
-    if (kind != BlockKey::kDepth && kind != BlockKey::kLine) {
+    if (kind != BlockKey::kPoint && kind != BlockKey::kLine) {
       if (others_at < 0) others_at = eq.offsets[kept];
       continue;
     }

@@ -10,7 +10,7 @@ int rejectOutliers(SlidingWindow& window, const LandmarkParams& params) {
   int rejected = 0;
   for (auto& [id, track] : window.points) {
     if (!track.triangulated) continue;
-    if (track.inverse_depth > 0 && reprojectionError(window, track) <= params.point_max_error_px) continue;
+    if (reprojectionError(window, track) <= params.point_max_error_px) continue;
     // the newest sighting may be right: the track starts anew from there
     track.sightings.erase(track.sightings.begin(), track.sightings.end() - 1);
     track.former.clear();

@@ -79,7 +79,11 @@ bool triangulatePoint(const SlidingWindow& window, const LandmarkParams& params,
   }
   const double focal = window.camera().meanFocal();
   if (!step.in_front || step.error * focal > params.point_max_error_px) return false;
-  track.inverse_depth = lambda;
+  const PointSighting& first = track.sightings.front();
+  const Pose T_w_c = window.T_w_c(window.frame(first.frame));
+  track.origin_w = T_w_c.p;
+  track.point << T_w_c.q * first.observation.corrected(window.correction.data()).homogeneous(), lambda;
+  track.point.normalize();
   track.sigma_inverse_depth =
       step.information > 0 ? sigma_px / focal / std::sqrt(step.information) : std::numeric_limits<double>::infinity();
   track.triangulated = true;
@@ -93,9 +97,26 @@ void triangulatePoints(SlidingWindow& window, const LandmarkParams& params, doub
 }
 
 double reprojectionError(const SlidingWindow& window, const PointTrack& track) {
-  if (track.sightings.size() < 2) return 0;
-  const Step step = evaluate(viewsOf(window, track), track.inverse_depth);
-  return step.in_front ? step.error * window.camera().meanFocal() : std::numeric_limits<double>::infinity();
+  const PinholeRadtan camera = window.correctedCamera();
+  double sum = 0;
+  for (const PointSighting& s : track.sightings) {
+    const Pose T_w_c = window.T_w_c(window.frame(s.frame));
+    const Eigen::Vector3d g = T_w_c.q.conjugate() * (track.point.head<3>() + track.point[3] * (track.origin_w - T_w_c.p));
+    if (g.z() < 1e-6) return std::numeric_limits<double>::infinity();
+    sum += (camera.toPixel(g.head<2>() / g.z()) - s.px).norm();
+  }
+  return track.sightings.empty() ? 0 : sum / static_cast<double>(track.sightings.size());
+}
+
+void updatePointUncertainty(const SlidingWindow& window, double sigma_px, PointTrack& track) {
+  if (track.sightings.size() < 2) return;
+  const Pose T_c_w = window.T_w_c(window.frame(track.sightings.front().frame)).inverse();
+  const double depth = (T_c_w * window.positionOf(track)).z();
+  if (depth <= 0) return;
+  const Step step = evaluate(viewsOf(window, track), 1 / depth);
+  if (!step.in_front || step.information <= 0) return;
+  track.sigma_inverse_depth =
+      std::min(track.sigma_inverse_depth, sigma_px / window.camera().meanFocal() / std::sqrt(step.information));
 }
 
 }  // namespace lintel

@@ -7,13 +7,16 @@
 namespace lintel {
 
 /// Inverse depth of a point from all its sightings with the window's poses: linear start, Gauss-Newton on the
-/// normalised plane. Sets inverse_depth, sigma_inverse_depth and triangulated; a point without parallax is
+/// normalised plane. Sets point, origin_w, sigma_inverse_depth and triangulated; a point without parallax is
 /// triangulated too (its depth has a large sigma and does no harm, its direction helps the rotation).
 /// Returns false when the point lies behind a camera or its error is too large.
 bool triangulatePoint(const SlidingWindow& window, const LandmarkParams& params, double sigma_px, PointTrack& track);
 
 /// Triangulates every track with enough sightings that is not yet.
 void triangulatePoints(SlidingWindow& window, const LandmarkParams& params, double sigma_px);
+
+/// Lowers sigma_inverse_depth to what the present sightings give.
+void updatePointUncertainty(const SlidingWindow& window, double sigma_px, PointTrack& track);
 
 /// Mean reprojection error over the sightings, in pixels; infinity when behind a camera.
 double reprojectionError(const SlidingWindow& window, const PointTrack& track);

@@ -10,20 +10,22 @@ std::shared_ptr<const StateManifold> manifoldOf(BlockKey::Kind kind) {
   static const std::shared_ptr<const StateManifold> line = std::make_shared<LineManifold>();
   static const std::shared_ptr<const StateManifold> motion = std::make_shared<VectorManifold>(kMotionSize);
   static const std::shared_ptr<const StateManifold> correction = std::make_shared<VectorManifold>(kCorrectionSize);
-  static const std::shared_ptr<const StateManifold> depth = std::make_shared<VectorManifold>(1);
+  static const std::shared_ptr<const StateManifold> point = std::make_shared<PointManifold>();
   switch (kind) {
     case BlockKey::kPose:
     case BlockKey::kExtrinsics: return pose;
     case BlockKey::kMotion: return motion;
     case BlockKey::kCorrection: return correction;
-    case BlockKey::kDepth: return depth;
+    case BlockKey::kPoint: return point;
     case BlockKey::kLine: return line;
   }
   return nullptr;
 }
 
 WindowFactors::WindowFactors(const SlidingWindow& window, const FactorParams& params)
-    : window_(window), params_(params), point_loss_(params.point_loss_width), line_loss_(params.line_loss_width) {}
+    : window_(window), params_(params), point_loss_(params.point_loss_width), line_loss_(params.line_loss_width) {
+  for (const WindowFrame& frame : window.frames) motions_[frame.id] = frame.bodyMotion();
+}
 
 void WindowFactors::add(std::unique_ptr<ceres::CostFunction> cost, std::vector<BlockKey> blocks) {
   factors_.push_back({cost.get(), nullptr, std::move(blocks)});
@@ -93,16 +95,14 @@ void WindowFactors::addPoints() {
 }
 
 void WindowFactors::addPoint(const PointTrack& track) {
-  const double weight = window_.camera().meanFocal() / params_.point_sigma_px;
-  const PointSighting& host = track.sightings.front();
-  for (std::size_t i = 1; i < track.sightings.size(); ++i) {
-    point_factors_.emplace_back(host.observation, track.sightings[i].observation, weight);
+  if (track.sightings.size() < 2) return;  // one sighting says nothing about the cameras
+  for (const PointSighting& s : track.sightings) {
+    point_factors_.emplace_back(s.px, window_.camera(), motionOf(s.frame), track.origin_w, params_.point_sigma_px);
     factors_.push_back({&point_factors_.back(), &point_loss_,
-                        {{BlockKey::kPose, host.frame},
-                         {BlockKey::kPose, track.sightings[i].frame},
+                        {{BlockKey::kPose, s.frame},
                          {BlockKey::kExtrinsics, 0},
                          {BlockKey::kCorrection, 0},
-                         {BlockKey::kDepth, track.id}}});
+                         {BlockKey::kPoint, track.id}}});
   }
 }
 
@@ -114,7 +114,7 @@ void WindowFactors::addLines() {
 void WindowFactors::addLine(const LineTrack& track) {
   for (const LineSighting& s : track.sightings) {
     const double weight = window_.camera().meanFocal() / (params_.line_sigma_px * s.sigma_px);
-    line_factors_.emplace_back(s.start, s.end, track.origin_w, weight);
+    line_factors_.emplace_back(s.start, s.end, motionOf(s.frame), track.origin_w, weight);
     factors_.push_back({&line_factors_.back(), &line_loss_,
                         {{BlockKey::kPose, s.frame},
                          {BlockKey::kExtrinsics, 0},

@@ -5,6 +5,7 @@
 
 #include <array>
 #include <deque>
+#include <map>
 #include <memory>
 #include <vector>
 
@@ -54,9 +55,12 @@ class WindowFactors {
  private:
   void addImu(const WindowFrame& before, const WindowFrame& frame);
 
+  const FrameMotion& motionOf(FrameId id) const { return motions_.at(id); }
+
   const SlidingWindow& window_;
   const FactorParams& params_;
   ceres::CauchyLoss point_loss_, line_loss_;
+  std::map<FrameId, FrameMotion> motions_;
   std::vector<Factor> factors_;
   std::deque<PointFactor> point_factors_;
   std::deque<LineFactor> line_factors_;

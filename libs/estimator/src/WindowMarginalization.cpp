@@ -35,31 +35,28 @@ void marginaliseOldest(SlidingWindow& window, const EstimatorParams& params) {
   factors.addImuAfter(oldest.id);
   factors.addRestOf(oldest, params.rest_velocity_sigma);
   const FrameId newest = window.frames.back().id;
-  const auto skip = [&](const auto& track) {
-    return params.marginalisation == 1 && track.sightings.back().frame == newest;
-  };
   for (const auto& [id, track] : window.points)
-    if (track.triangulated && track.sightings.size() > 1 && track.sightings.front().frame == oldest.id && !skip(track)) {
+    if (track.triangulated && track.sightings.size() > 1 && track.sightings.front().frame == oldest.id) {
       factors.addPoint(track);
-      dropped.insert({BlockKey::kDepth, id});
+      dropped.insert({BlockKey::kPoint, id});
     }
   for (const auto& [id, track] : window.lines)
     if (track.triangulated && !track.degenerate && track.sightings.size() > 1 &&
-        track.sightings.front().frame == oldest.id && !skip(track)) {
+        track.sightings.front().frame == oldest.id) {
       factors.addLine(track);
       dropped.insert({BlockKey::kLine, id});
     }
   marginaliseWith(window, factors.factors(), takePriors(window, dropped), dropped);
-  if (params.marginalisation != 2) return;
+  // Their sightings have been used: a track that goes on keeps only the newest, so that nothing counts twice.
+  // (The oldest goes with its frame.)
   const auto consume = [&](auto& tracks, BlockKey::Kind kind) {
     for (auto& [id, track] : tracks)
       if (dropped.count({kind, id}) && track.sightings.back().frame == newest && track.sightings.size() > 2) {
-        // keep oldest (to be removed) and newest only
         track.former.insert(track.former.end(), track.sightings.begin() + 1, track.sightings.end() - 1);
         track.sightings.erase(track.sightings.begin() + 1, track.sightings.end() - 1);
       }
   };
-  consume(window.points, BlockKey::kDepth);
+  consume(window.points, BlockKey::kPoint);
   consume(window.lines, BlockKey::kLine);
 }
 

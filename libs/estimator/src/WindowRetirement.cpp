@@ -17,9 +17,10 @@ std::vector<Sighting> allSightings(const std::vector<Sighting>& former, const st
 }
 
 void retirePoint(const SlidingWindow& window, const PointTrack& track, WindowUpdate& update) {
-  if (!track.triangulated || track.sightings.empty() || track.inverse_depth <= 0) return;
-  const double lambda = track.inverse_depth;
-  update.points.push_back({track.id, window.positionOf(track), track.sigma_inverse_depth / (lambda * lambda),
+  if (!track.triangulated || track.sightings.empty() || track.point[3] <= 0) return;
+  const Eigen::Vector3d p_w = window.positionOf(track);
+  const double distance = (p_w - window.T_w_c(window.frame(track.sightings.front().frame)).p).norm();
+  update.points.push_back({track.id, p_w, track.sigma_inverse_depth * distance * distance,
                            allSightings(track.former, track.sightings)});
 }
 
@@ -42,7 +43,7 @@ bool isSpent(const Track& track, FrameId leaving, FrameId newest) {
 /// Sightings of a frame that leaves without having been a keyframe are not handed over.
 template <class Track>
 void dropSighting(Track& track, FrameId frame) {
-  for (std::size_t i = 1; i < track.sightings.size(); ++i)  // a host must stay: the depth is relative to it
+  for (std::size_t i = 1; i < track.sightings.size(); ++i)
     if (track.sightings[i].frame == frame) {
       track.sightings.erase(track.sightings.begin() + static_cast<std::ptrdiff_t>(i));
       return;

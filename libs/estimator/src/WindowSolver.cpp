@@ -10,7 +10,7 @@ namespace lintel {
 
 namespace {
 
-bool isLandmark(BlockKey::Kind kind) { return kind == BlockKey::kDepth || kind == BlockKey::kLine; }
+bool isLandmark(BlockKey::Kind kind) { return kind == BlockKey::kPoint || kind == BlockKey::kLine; }
 
 class ProblemBuilder {
  public:

@@ -9,13 +9,14 @@
 namespace lintel {
 
 bool LineFactor::Evaluate(double const* const* parameters, double* residuals, double** jacobians) const {
-  const Pose T_w_b = poseFromBlock(parameters[0]), T_b_c = poseFromBlock(parameters[1]);
+  const ShiftedPose T_w_b(parameters[0], motion_, parameters[2][kTimeOffsetAt]);
+  const Pose T_b_c = poseFromBlock(parameters[1]);
   const OrthonormalLine line = lineFromBlock(parameters[3]);
   const Eigen::Matrix3d U = line.U.toRotationMatrix();
   const double cosine = std::cos(line.phi), sine = std::sin(line.phi);
   const Eigen::Vector3d n_w = cosine * U.col(0), d_w = sine * U.col(1);
-  const Eigen::Matrix3d R_b_w = T_w_b.R().transpose(), R_c_b = T_b_c.R().transpose(), R_w_b = T_w_b.R();
-  const Eigen::Vector3d p_w_c = T_w_b * T_b_c.p;
+  const Eigen::Matrix3d &R_w_b = T_w_b.R_w_b, R_b_w = R_w_b.transpose(), R_c_b = T_b_c.R().transpose();
+  const Eigen::Vector3d p_w_c = R_w_b * T_b_c.p + T_w_b.p_w_b;
   const Eigen::Vector3d n_b = R_b_w * (n_w + (origin_w_ - p_w_c).cross(d_w));  // moment about the camera, body axes
   const Eigen::Vector3d l = R_c_b * n_b;
   const double m = std::max(l.head<2>().norm(), 1e-12);
@@ -33,11 +34,8 @@ bool LineFactor::Evaluate(double const* const* parameters, double* residuals, do
   const Eigen::Matrix<double, 2, 3> d_nb = d_l * R_c_b;
   const Eigen::Matrix<double, 2, 3> d_nw = d_nb * R_b_w;
   const Eigen::Matrix<double, 2, 3> d_centre = d_nw * skew(d_w);  // d r / d p_w_c
-  if (jacobians[0]) {
-    Eigen::Map<Eigen::Matrix<double, 2, kPoseSize, Eigen::RowMajor>> J(jacobians[0]);
-    J.leftCols<3>() = d_centre;
-    J.rightCols<4>() = (d_nb * skew(n_b) - d_centre * R_w_b * skew(T_b_c.p)) * rotationLift(T_w_b.q);
-  }
+  const Eigen::Matrix<double, 2, 3> d_rotation = d_nb * skew(n_b) - d_centre * R_w_b * skew(T_b_c.p);
+  if (jacobians[0]) T_w_b.writePoseJacobian(d_centre, d_rotation, jacobians[0]);
   if (jacobians[1]) {
     Eigen::Map<Eigen::Matrix<double, 2, kPoseSize, Eigen::RowMajor>> J(jacobians[1]);
     J.leftCols<3>() = d_centre * R_w_b;
@@ -47,6 +45,7 @@ bool LineFactor::Evaluate(double const* const* parameters, double* residuals, do
     Eigen::Map<Eigen::Matrix<double, 2, kCorrectionSize, Eigen::RowMajor>> J(jacobians[2]);
     J.row(0) = weight_ * normal.transpose() * start_.correction_jacobian;
     J.row(1) = weight_ * normal.transpose() * end_.correction_jacobian;
+    J.col(kTimeOffsetAt) += T_w_b.offsetJacobian(d_centre, d_rotation);
   }
   if (jacobians[3]) {
     const Eigen::Matrix<double, 2, 3> d_dw = d_nw * skew(origin_w_ - p_w_c);

@@ -1,59 +1,52 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "lintel/factors/PointFactor.h"
 
-#include <algorithm>
-
-#include "lintel/geometry/Rotation.h"
+#include <cmath>
 
 namespace lintel {
 
-namespace {
-
-using Jacobian2Pose = Eigen::Matrix<double, 2, kPoseSize, Eigen::RowMajor>;
-
-void writePoseJacobian(double* out, const Eigen::Matrix<double, 2, 3>& d_position,
-                       const Eigen::Matrix<double, 2, 3>& d_rotation, const Eigen::Quaterniond& q) {
-  Eigen::Map<Jacobian2Pose> J(out);
-  J.leftCols<3>() = d_position;
-  J.rightCols<4>().noalias() = d_rotation * rotationLift(q);
-}
-
-}  // namespace
-
 bool PointFactor::Evaluate(double const* const* parameters, double* residuals, double** jacobians) const {
-  const Pose T_w_bi = poseFromBlock(parameters[0]), T_w_bj = poseFromBlock(parameters[1]), T_b_c = poseFromBlock(parameters[2]);
-  const double lambda = parameters[4][0];
-  const Eigen::Vector3d ray_ci = host_.corrected(parameters[3]).homogeneous();
-  const Eigen::Matrix3d R_w_bi = T_w_bi.R(), R_bj_w = T_w_bj.R().transpose(), R_b_c = T_b_c.R();
+  const double* correction = parameters[2];
+  const ShiftedPose T_w_b(parameters[0], motion_, correction[kTimeOffsetAt]);
+  const Pose T_b_c = poseFromBlock(parameters[1]);
+  const Eigen::Vector3d X = Eigen::Vector3d::Map(parameters[3]);
+  const double w = parameters[3][3];
+  const PinholeRadtan camera = correctedCamera(camera_, correction);
+  const Eigen::Matrix3d R_b_w = T_w_b.R_w_b.transpose(), R_c_b = T_b_c.R().transpose();
 
-  // positions scaled by lambda, so that points at infinity stay finite
-  const Eigen::Vector3d g_bi = R_b_c * ray_ci + lambda * T_b_c.p;
-  const Eigen::Vector3d g_bj = R_bj_w * (R_w_bi * g_bi + lambda * (T_w_bi.p - T_w_bj.p));
-  const Eigen::Vector3d g_cj = R_b_c.transpose() * (g_bj - lambda * T_b_c.p);
-  const double z = std::abs(g_cj.z()) > 1e-6 ? g_cj.z() : 1e-6;
-
+  const Eigen::Vector3d from_body_w = origin_w_ - T_w_b.p_w_b;
+  const Eigen::Vector3d g_b = R_b_w * (X + w * from_body_w);  // seen from the body's origin, scaled by w
+  const Eigen::Vector3d g_c = R_c_b * (g_b - w * T_b_c.p);
+  const double z = std::abs(g_c.z()) > 1e-9 ? g_c.z() : 1e-9;
+  const Eigen::Vector2d n = g_c.head<2>() / z, distorted = camera.distort(n);
   Eigen::Map<Eigen::Vector2d> r(residuals);
-  r = weight_ * (g_cj.head<2>() / z - target_.corrected(parameters[3]));
+  r = weight_ * (Eigen::Vector2d(camera.fx * distorted.x() + camera.cx, camera.fy * distorted.y() + camera.cy) - px_);
   if (!jacobians) return true;
 
-  Eigen::Matrix<double, 2, 3> d_g;  // d r / d g_cj
-  d_g << 1, 0, -g_cj.x() / z, 0, 1, -g_cj.y() / z;
-  d_g *= weight_ / z;
-  const Eigen::Matrix<double, 2, 3> d_gbj = d_g * R_b_c.transpose();
-  const Eigen::Matrix<double, 2, 3> d_gw = d_gbj * R_bj_w;
-  const Eigen::Matrix<double, 2, 3> d_gbi = d_gw * R_w_bi;
-  if (jacobians[0]) writePoseJacobian(jacobians[0], lambda * d_gw, -d_gbi * skew(g_bi), T_w_bi.q);
-  if (jacobians[1]) writePoseJacobian(jacobians[1], -lambda * d_gw, d_gbj * skew(g_bj), T_w_bj.q);
-  const Eigen::Matrix<double, 2, 3> d_ray = d_gbi * R_b_c;
-  if (jacobians[2])
-    writePoseJacobian(jacobians[2], lambda * (d_gbi - d_gbj), d_g * skew(g_cj) - d_ray * skew(ray_ci), T_b_c.q);
-  if (jacobians[3]) {
-    Eigen::Map<Eigen::Matrix<double, 2, kCorrectionSize, Eigen::RowMajor>> J(jacobians[3]);
-    J = d_ray.leftCols<2>() * host_.correction_jacobian - weight_ * target_.correction_jacobian;
+  const Eigen::Vector2d focal(weight_ * camera.fx, weight_ * camera.fy);
+  Eigen::Matrix<double, 2, 3> d_n;  // d n / d g_c
+  d_n << 1 / z, 0, -n.x() / z, 0, 1 / z, -n.y() / z;
+  const Eigen::Matrix<double, 2, 3> d_g = focal.asDiagonal() * camera.distortJacobian(n) * d_n;
+  const Eigen::Matrix<double, 2, 3> d_gb = d_g * R_c_b;
+  const Eigen::Matrix<double, 2, 3> d_gw = d_gb * R_b_w;
+  const Eigen::Matrix<double, 2, 3> d_position = -w * d_gw, d_rotation = d_gb * skew(g_b);
+  if (jacobians[0]) T_w_b.writePoseJacobian(d_position, d_rotation, jacobians[0]);
+  if (jacobians[1]) {
+    Eigen::Map<Eigen::Matrix<double, 2, kPoseSize, Eigen::RowMajor>> J(jacobians[1]);
+    J.leftCols<3>() = -w * d_gb;
+    J.rightCols<4>() = d_g * skew(g_c) * rotationLift(T_b_c.q);
   }
-  if (jacobians[4]) {
-    Eigen::Map<Eigen::Vector2d> J(jacobians[4]);
-    J = d_gbj * (R_bj_w * (R_w_bi * T_b_c.p + T_w_bi.p - T_w_bj.p) - T_b_c.p);
+  if (jacobians[2]) {
+    const double r2 = n.squaredNorm();
+    Eigen::Map<Eigen::Matrix<double, 2, kCorrectionSize, Eigen::RowMajor>> J(jacobians[2]);
+    J.row(0) << weight_ * distorted.x(), 0, weight_, 0, focal.x() * n.x() * r2, focal.x() * n.x() * r2 * r2, 0;
+    J.row(1) << 0, weight_ * distorted.y(), 0, weight_, focal.y() * n.y() * r2, focal.y() * n.y() * r2 * r2, 0;
+    J.col(kTimeOffsetAt) = T_w_b.offsetJacobian(d_position, d_rotation);
+  }
+  if (jacobians[3]) {
+    Eigen::Map<Eigen::Matrix<double, 2, kPointSize, Eigen::RowMajor>> J(jacobians[3]);
+    J.leftCols<3>() = d_gw;
+    J.col(3) = d_gw * from_body_w - d_gb * T_b_c.p;
   }
   return true;
 }

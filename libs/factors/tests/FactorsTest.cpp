@@ -42,7 +42,7 @@ NormalisedObservation observation(double x, double y) {
   o.position = {x, y};
   o.correction_jacobian = 0.01 * ObservationJacobian::Ones();
   o.correction_jacobian(0, 2) = -0.02;
-  o.correction_jacobian(1, kTimeOffsetAt) = 0.4;
+  o.correction_jacobian.col(kTimeOffsetAt).setZero();
   return o;
 }
 
@@ -50,28 +50,55 @@ struct Scene {
   PoseBlock T_w_bi = toBlock(Pose{expRotation({0.1, -0.2, 0.3}), {0.5, 0.2, -0.1}});
   PoseBlock T_w_bj = toBlock(Pose{expRotation({0.15, -0.1, 0.4}), {0.9, 0.3, 0.1}});
   PoseBlock T_b_c = toBlock(Pose{expRotation({0.02, 0.01, 1.55}), {-0.02, -0.06, 0.01}});
-  CorrectionBlock correction = 0.1 * CorrectionBlock::Ones();
+  CorrectionBlock correction = 0.01 * CorrectionBlock::Ones();
 };
 
+PinholeRadtan eurocCamera() { return {752, 480, 458.654, 457.296, 367.215, 248.375, -0.28, 0.074, 2e-4, 1.8e-5}; }
+
+const FrameMotion kMotion{{0.5, -0.3, 0.8}, {0.3, -0.6, 0.2}};
+
 TEST(PointFactor, HandComputed) {
-  // Camera j stands 1 m to the right of camera i; the point is 2 m straight ahead of i, thus at x = -0.5 in j.
-  const PoseBlock identity = toBlock(Pose{}), right = toBlock(Pose{Eigen::Quaterniond::Identity(), {1, 0, 0}});
+  // Camera j stands 1 m to the right of the origin; the point is 2 m ahead of the origin, thus at x/z = -0.5.
+  const PoseBlock right = toBlock(Pose{Eigen::Quaterniond::Identity(), {1, 0, 0}}), identity = toBlock(Pose{});
   const CorrectionBlock zero = CorrectionBlock::Zero();
-  const double depth = 0.5;
-  PointFactor factor(observation(0, 0), observation(-0.4, 0.1), 100);
-  const double* blocks[] = {identity.data(), right.data(), identity.data(), zero.data(), &depth};
+  const PointBlock point(0, 0, 2, 1);
+  const PinholeRadtan camera{640, 480, 100, 100, 320, 240, 0, 0, 0, 0};
+  PointFactor factor({280, 250}, camera, {}, Eigen::Vector3d::Zero(), 2);
+  const double* blocks[] = {right.data(), identity.data(), zero.data(), point.data()};
   Eigen::Vector2d r;
   ASSERT_TRUE(factor.Evaluate(blocks, r.data(), nullptr));
-  EXPECT_NEAR(r.x(), -10, 1e-12);
-  EXPECT_NEAR(r.y(), -10, 1e-12);
+  EXPECT_NEAR(r.x(), -5, 1e-12);  // seen at (270, 240)
+  EXPECT_NEAR(r.y(), -5, 1e-12);
 }
 
-TEST(PointFactor, Gradients) {
+TEST(PointFactor, TimeOffsetMovesTheCamera) {
+  // At 2 m/s to the right an offset of 50 ms is 0.1 m: 5 px at 2 m and a focal length of 100 px.
+  const PoseBlock identity = toBlock(Pose{});
+  CorrectionBlock correction = CorrectionBlock::Zero();
+  correction[kTimeOffsetAt] = 0.05;
+  const PointBlock point(0, 0, 2, 1);
+  const PinholeRadtan camera{640, 480, 100, 100, 320, 240, 0, 0, 0, 0};
+  PointFactor factor({320, 240}, camera, {{2, 0, 0}, {0, 0, 0}}, Eigen::Vector3d::Zero(), 1);
+  const double* blocks[] = {identity.data(), identity.data(), correction.data(), point.data()};
+  Eigen::Vector2d r;
+  ASSERT_TRUE(factor.Evaluate(blocks, r.data(), nullptr));
+  EXPECT_NEAR(r.x(), -5, 1e-12);
+  EXPECT_NEAR(r.y(), 0, 1e-12);
+}
+
+TEST(PointFactor, GradientsFromNearToInfinity) {
   const Scene s;
-  PointFactor factor(observation(0.1, -0.2), observation(0.05, -0.25), 300);
-  for (const double depth : {1e-9, 0.02, 0.3, 2.0})
-    expectGradients(factor, {&kPoseManifold, &kPoseManifold, &kPoseManifold, nullptr, nullptr},
-                    {s.T_w_bi.data(), s.T_w_bj.data(), s.T_b_c.data(), s.correction.data(), &depth});
+  const PointManifold manifold;
+  const CorrectionBlock correction = (CorrectionBlock() << 1, -1, 0.5, 2, 0.01, -0.003, 0.004).finished();
+  const Pose T_w_c = poseFromBlock(s.T_w_bi.data()) * poseFromBlock(s.T_b_c.data());
+  for (const double inverse_depth : {0.0, 0.02, 0.3, 2.0}) {
+    PointBlock point;
+    point << T_w_c.q * Eigen::Vector3d(0.2, -0.1, 1), inverse_depth;
+    point.normalize();
+    PointFactor factor({350, 260}, eurocCamera(), kMotion, T_w_c.p + Eigen::Vector3d(0.1, 0, 0), 0.7);
+    expectGradients(factor, {&kPoseManifold, &kPoseManifold, nullptr, &manifold},
+                    {s.T_w_bi.data(), s.T_b_c.data(), correction.data(), point.data()});
+  }
 }
 
 TEST(LineFactor, HandComputed) {
@@ -80,7 +107,7 @@ TEST(LineFactor, HandComputed) {
   const LineBlock line = toBlock(toOrthonormal(movedOrigin(lineThrough({-1, 2, 4}, {1, 2, 4}), origin)));
   const PoseBlock identity = toBlock(Pose{});
   const CorrectionBlock zero = CorrectionBlock::Zero();
-  LineFactor factor(observation(-0.3, 0.5), observation(0.3, 0.6), origin, 100);
+  LineFactor factor(observation(-0.3, 0.5), observation(0.3, 0.6), {}, origin, 100);
   const double* blocks[] = {identity.data(), identity.data(), zero.data(), line.data()};
   Eigen::Vector2d r;
   ASSERT_TRUE(factor.Evaluate(blocks, r.data(), nullptr));
@@ -97,7 +124,7 @@ TEST(LineFactor, GradientsFromFarToNearlyThroughTheCameraAndTheOrigin) {
     for (const double offset : {1e-3, 0.3, 2.0}) {
       const Eigen::Vector3d origin = p0 + offset * Eigen::Vector3d(0.3, -0.5, 0.8);
       const LineBlock line = toBlock(toOrthonormal(movedOrigin(lineThrough(p0, p1), origin)));
-      LineFactor factor(observation(0.12, -0.2), observation(0.3, 0.08), origin, 300);
+      LineFactor factor(observation(0.12, -0.2), observation(0.3, 0.08), kMotion, origin, 300);
       expectGradients(factor, {&kPoseManifold, &kPoseManifold, nullptr, &kLineManifold},
                       {s.T_w_bi.data(), s.T_b_c.data(), s.correction.data(), line.data()}, 1e-5);
     }

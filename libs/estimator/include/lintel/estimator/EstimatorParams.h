@@ -134,7 +134,6 @@ struct EstimatorParams {
   int keyframe_min_tracked = 20;         ///< fewer points shared with the last keyframe make a new one
   double max_keyframe_interval_s = 10;   ///< a keyframe at least this often, also at rest
   int max_iterations = 8;
-  int marginalisation = 0;
   double rest_disparity_px = 0.25;       ///< median motion between window frames below which rest is assumed
   double rest_velocity_sigma = 0.01;     ///< zero-velocity observation at rest [m/s]
   FactorParams factors;
@@ -151,7 +150,6 @@ struct EstimatorParams {
     field("keyframe_min_tracked", keyframe_min_tracked);
     field("max_keyframe_interval_s", max_keyframe_interval_s);
     field("max_iterations", max_iterations);
-    field("marginalisation", marginalisation);
     field("rest_disparity_px", rest_disparity_px);
     field("rest_velocity_sigma", rest_velocity_sigma);
     field("factors", factors);

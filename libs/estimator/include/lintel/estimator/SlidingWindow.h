@@ -8,7 +8,8 @@
 #include <memory>
 #include <vector>
 
-#include "lintel/factors/PointFactor.h"
+#include "lintel/factors/FrameMotion.h"
+#include "lintel/factors/LineFactor.h"
 #include "lintel/factors/PriorFactors.h"
 #include "lintel/factors/StateBlocks.h"
 #include "lintel/inertial/Preintegration.h"
@@ -21,7 +22,7 @@ using FrameId = std::uint64_t;  ///< counts the frames that entered the window
 
 /// Names a parameter block of the window. Blocks move in memory, keys stay.
 struct BlockKey {
-  enum Kind { kPose, kMotion, kExtrinsics, kCorrection, kDepth, kLine };
+  enum Kind { kPose, kMotion, kExtrinsics, kCorrection, kPoint, kLine };
   Kind kind = kPose;
   std::uint64_t id = 0;  ///< frame, point or line; 0 for the calibration
   bool operator<(const BlockKey& o) const { return kind != o.kind ? kind < o.kind : id < o.id; }
@@ -35,9 +36,13 @@ struct WindowFrame {
   PoseBlock pose = toBlock(Pose{});              ///< T_w_b
   MotionBlock motion = MotionBlock::Zero();      ///< velocity and biases
   std::shared_ptr<Preintegration> imu;           ///< from the frame before; null for the first
+  Eigen::Vector3d gyro = Eigen::Vector3d::Zero();  ///< measured at t_ns, bias included [rad/s]
   bool at_rest = false;                          ///< gets a zero-velocity observation
 
   Pose T_w_b() const { return poseFromBlock(pose.data()); }
+  FrameMotion bodyMotion() const {
+    return {T_w_b().q.conjugate() * velocityOf(motion.data()), gyro - biasOf(motion.data()).gyro};
+  }
 };
 
 struct PointSighting {
@@ -54,13 +59,14 @@ struct LineSighting {
   bool detected = true;
 };
 
-/// A point: its host is the first sighting's frame.
+/// A point: homogeneous, world axes, relative to `origin_w` (PointFactor.h).
 struct PointTrack {
   TrackId id = 0;
   std::vector<PointSighting> sightings;           ///< in window frames, in their order
   std::vector<PointSighting> former;              ///< in keyframes that have left the window
-  double inverse_depth = 0;                       ///< along the host's ray [1/m]
-  double sigma_inverse_depth = 0;
+  PointBlock point = PointBlock::Zero();
+  Eigen::Vector3d origin_w = Eigen::Vector3d::Zero();
+  double sigma_inverse_depth = 0;                 ///< along the ray of the first sighting [1/m]; the best so far
   bool triangulated = false;
 };
 
@@ -103,43 +109,23 @@ class SlidingWindow {
   WindowFrame& frame(FrameId id);
   double* block(const BlockKey& key);                        ///< throws std::out_of_range
 
-  /// Appends a frame and its tracks. `velocities`: d normalised / dt of the points and line ends by track [1/s].
-  void addFrame(WindowFrame frame, const FrameTracks& tracks, const class FeatureVelocities& velocities);
+  /// Appends a frame and its tracks.
+  void addFrame(WindowFrame frame, const FrameTracks& tracks);
 
-  /// Forgets a frame and its sightings (keeping them in `former` when it was a keyframe). Tracks keep their estimate:
-  /// a point hosted there gets its next sighting as host. Does not touch priors.
+  /// Forgets a frame and its sightings (keeping them in `former` when it was a keyframe). Tracks keep their estimate.
+  /// Does not touch priors.
   void removeFrame(FrameId id, bool keyframe);
-
-  /// Depth of a point in the camera of its host moved to `host`'s camera frame; used when the host leaves.
-  static double transferredInverseDepth(const PointTrack& track, const Pose& T_w_c_old, const Pose& T_w_c_new,
-                                        const Eigen::Vector2d& x_old);
 
   Pose T_w_c(const WindowFrame& f) const { return f.T_w_b() * T_b_c(); }
 
-  /// World position of a triangulated point.
+  /// World position of a triangulated point; far away for one at infinity.
   Eigen::Vector3d positionOf(const PointTrack& track) const;
 
  private:
   PinholeRadtan camera_;
 };
 
-/// Image velocities of the features of one frame on the normalised plane, from the frame before.
-class FeatureVelocities {
- public:
-  FeatureVelocities() = default;
-  /// Empty unless `before` is earlier than `now`.
-  FeatureVelocities(const FrameTracks& before, const FrameTracks& now);
-  Eigen::Vector2d point(TrackId id) const;
-  Eigen::Vector2d lineStart(TrackId id) const;
-  Eigen::Vector2d lineEnd(TrackId id) const;
-
- private:
-  std::map<TrackId, Eigen::Vector2d> points_, starts_, ends_;
-};
-
-/// How an observation depends on the camera correction: intrinsics by the camera model, time offset by its velocity.
-/// The image with stamp t shows the world at t + offset.
-NormalisedObservation makeObservation(const PinholeRadtan& camera, const Eigen::Vector2d& normalised,
-                                      const Eigen::Vector2d& velocity);
+/// How an observation depends on the camera correction (intrinsics, by the camera model).
+NormalisedObservation makeObservation(const PinholeRadtan& camera, const Eigen::Vector2d& normalised);
 
 }  // namespace lintel

@@ -3,10 +3,21 @@
 
 #include <ceres/sized_cost_function.h>
 
-#include "lintel/factors/PointFactor.h"
+#include "lintel/factors/FrameMotion.h"
 #include "lintel/factors/StateBlocks.h"
 
 namespace lintel {
+
+/// An image observation on the normalised plane and how it moves with the camera correction.
+struct NormalisedObservation {
+  Eigen::Vector2d position = Eigen::Vector2d::Zero();  ///< (x/z, y/z)
+  ObservationJacobian correction_jacobian = ObservationJacobian::Zero();
+
+  /// The observation under a correction, to first order.
+  Eigen::Vector2d corrected(const double* correction) const {
+    return position + correction_jacobian * Eigen::Map<const CorrectionBlock>(correction);
+  }
+};
 
 /// Distances of the two observed end points to the projected infinite line, on the normalised plane
 /// ([Lim2021] line residual, [Bartoli2005]):
@@ -18,13 +29,14 @@ namespace lintel {
 /// line keeps phi well conditioned far from the world's origin.
 class LineFactor final : public ceres::SizedCostFunction<2, kPoseSize, kPoseSize, kCorrectionSize, kLineSize> {
  public:
-  LineFactor(const NormalisedObservation& start, const NormalisedObservation& end, const Eigen::Vector3d& origin_w,
-             double weight)
-      : start_(start), end_(end), origin_w_(origin_w), weight_(weight) {}
+  LineFactor(const NormalisedObservation& start, const NormalisedObservation& end, const FrameMotion& motion,
+             const Eigen::Vector3d& origin_w, double weight)
+      : start_(start), end_(end), motion_(motion), origin_w_(origin_w), weight_(weight) {}
   bool Evaluate(double const* const* parameters, double* residuals, double** jacobians) const override;
 
  private:
   NormalisedObservation start_, end_;
+  FrameMotion motion_;
   Eigen::Vector3d origin_w_;
   double weight_;
 };

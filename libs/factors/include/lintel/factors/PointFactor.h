@@ -3,36 +3,31 @@
 
 #include <ceres/sized_cost_function.h>
 
+#include "lintel/factors/FrameMotion.h"
 #include "lintel/factors/StateBlocks.h"
+#include "lintel/geometry/PinholeRadtan.h"
 
 namespace lintel {
 
-/// An image observation on the normalised plane and how it moves with the camera correction.
-struct NormalisedObservation {
-  Eigen::Vector2d position = Eigen::Vector2d::Zero();      ///< (x/z, y/z)
-  ObservationJacobian correction_jacobian = ObservationJacobian::Zero();
-
-  /// The observation under a correction, to first order.
-  Eigen::Vector2d corrected(const double* correction) const {
-    return position + correction_jacobian * Eigen::Map<const CorrectionBlock>(correction);
-  }
-};
-
-/// Reprojection of a point with inverse depth lambda along its ray in the host camera i, seen by camera j:
+/// Reprojection of a homogeneous point (X, w), X / w relative to the constant world point `origin_w`, in raw pixels:
 ///
-///   g = R_cj_ci (x_i, 1) + lambda p_cj_ci,    r = weight (g.xy / g.z - x_j)        [Qin2018]
+///   g = R_c_w (X + w (origin_w - p_w_c)),    r = (camera(g) - px) / sigma_px
 ///
-/// `weight` = focal / sigma_px: residuals in standard deviations. Blocks: pose_i (T_w_bi), pose_j (T_w_bj),
-/// extrinsics (T_b_c), correction, depth. Finite for lambda -> 0.
-class PointFactor final
-    : public ceres::SizedCostFunction<2, kPoseSize, kPoseSize, kPoseSize, kCorrectionSize, 1> {
+/// Every sighting has its residual, the first one too. (Inverse depth along a ray fixed by the first sighting takes
+/// that sighting as exact: its noise then biases depth, and with it focal length and extrinsics.) Points at infinity
+/// are regular: w = 0. Blocks: pose (T_w_b), extrinsics (T_b_c), correction, point.
+class PointFactor final : public ceres::SizedCostFunction<2, kPoseSize, kPoseSize, kCorrectionSize, kPointSize> {
  public:
-  PointFactor(const NormalisedObservation& host, const NormalisedObservation& target, double weight)
-      : host_(host), target_(target), weight_(weight) {}
+  PointFactor(const Eigen::Vector2d& px, const PinholeRadtan& camera, const FrameMotion& motion,
+              const Eigen::Vector3d& origin_w, double sigma_px)
+      : px_(px), camera_(camera), motion_(motion), origin_w_(origin_w), weight_(1 / sigma_px) {}
   bool Evaluate(double const* const* parameters, double* residuals, double** jacobians) const override;
 
  private:
-  NormalisedObservation host_, target_;
+  Eigen::Vector2d px_;
+  PinholeRadtan camera_;
+  FrameMotion motion_;
+  Eigen::Vector3d origin_w_;
   double weight_;
 };
 

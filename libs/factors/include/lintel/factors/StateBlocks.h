@@ -3,6 +3,7 @@
 
 #include <Eigen/Core>
 
+#include "lintel/geometry/PinholeRadtan.h"
 #include "lintel/geometry/PluckerLine.h"
 #include "lintel/geometry/Pose.h"
 #include "lintel/inertial/Preintegration.h"
@@ -15,19 +16,22 @@ namespace lintel {
 //   motion     9        v_w_b [m/s], bias_gyro [rad/s], bias_accel [m/s^2]
 //   line       5 -> 4   orthonormal line (PluckerLine.h): U as quaternion x y z w, phi; U <- U Exp(dpsi), phi += dphi.
 //                       World axes; the moment is about a constant point near the line (LineFactor.h)
-//   depth      1        inverse depth of a point in its host camera [1/m]
+//   point      4 -> 3   homogeneous point (X, w) of unit length: X / w [m] in world axes from a constant origin
 //   correction 7        what the calibrated camera is wrong by: fx fy cx cy [px], k1 k2, time offset [s]
 constexpr int kPoseSize = 7, kPoseTangent = 6;
 constexpr int kMotionSize = 9, kVelocityAt = 0, kBiasGyroAt = 3, kBiasAccelAt = 6;
 constexpr int kLineSize = 5, kLineTangent = 4;
+constexpr int kPointSize = 4, kPointTangent = 3;
 constexpr int kCorrectionSize = 7, kTimeOffsetAt = 6;
 
 using PoseBlock = Eigen::Matrix<double, kPoseSize, 1>;
 using MotionBlock = Eigen::Matrix<double, kMotionSize, 1>;
+using PointBlock = Eigen::Matrix<double, kPointSize, 1>;
 using LineBlock = Eigen::Matrix<double, kLineSize, 1>;
 using CorrectionBlock = Eigen::Matrix<double, kCorrectionSize, 1>;
 
 /// d normalised observation / d correction: how one image observation moves with the camera correction.
+/// The column of the time offset is zero: that moves the pose instead (FrameMotion.h).
 using ObservationJacobian = Eigen::Matrix<double, 2, kCorrectionSize>;
 
 inline PoseBlock toBlock(const Pose& pose) {
@@ -49,6 +53,17 @@ inline OrthonormalLine lineFromBlock(const double* b) {
 inline Eigen::Vector3d velocityOf(const double* motion) { return Eigen::Vector3d::Map(motion + kVelocityAt); }
 inline ImuBias biasOf(const double* motion) {
   return {Eigen::Vector3d::Map(motion + kBiasGyroAt), Eigen::Vector3d::Map(motion + kBiasAccelAt)};
+}
+
+/// The calibrated camera with a correction block added.
+inline PinholeRadtan correctedCamera(PinholeRadtan camera, const double* correction) {
+  camera.fx += correction[0];
+  camera.fy += correction[1];
+  camera.cx += correction[2];
+  camera.cy += correction[3];
+  camera.k1 += correction[4];
+  camera.k2 += correction[5];
+  return camera;
 }
 
 /// Maps a right perturbation to quaternion coefficients: dq (x y z w) = rotationPlus(q) * dtheta.
