@@ -79,13 +79,15 @@ bool triangulatePoint(const SlidingWindow& window, const LandmarkParams& params,
   }
   const double focal = window.camera().meanFocal();
   if (!step.in_front || step.error * focal > params.point_max_error_px) return false;
+  const double sigma =
+      step.information > 0 ? sigma_px / focal / std::sqrt(step.information) : std::numeric_limits<double>::infinity();
+  if (sigma > params.point_max_relative_sigma * lambda) return false;
   const PointSighting& first = track.sightings.front();
   const Pose T_w_c = window.T_w_c(window.frame(first.frame));
   track.origin_w = T_w_c.p;
   track.point << T_w_c.q * first.observation.corrected(window.correction.data()).homogeneous(), lambda;
   track.point.normalize();
-  track.sigma_inverse_depth =
-      step.information > 0 ? sigma_px / focal / std::sqrt(step.information) : std::numeric_limits<double>::infinity();
+  track.sigma_inverse_depth = sigma;
   track.triangulated = true;
   return true;
 }

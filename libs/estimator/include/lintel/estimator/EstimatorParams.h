@@ -56,6 +56,7 @@ struct CalibrationParams {
 /// When a track becomes part of the problem, and when it is thrown out.
 struct LandmarkParams {
   int point_min_observations = 3;        ///< window frames
+  double point_max_relative_sigma = 0.3; ///< of the inverse depth when a track enters the problem
   double point_max_error_px = 3.0;       ///< mean reprojection error above which a track is an outlier
   double max_depth_m = 200;
   double min_depth_m = 0.1;
@@ -67,6 +68,7 @@ struct LandmarkParams {
   template <class F>
   void fields(F&& field) {
     field("point_min_observations", point_min_observations);
+    field("point_max_relative_sigma", point_max_relative_sigma);
     field("point_max_error_px", point_max_error_px);
     field("max_depth_m", max_depth_m);
     field("min_depth_m", min_depth_m);
