@@ -3,6 +3,7 @@
 
 #include <Eigen/Cholesky>
 #include <Eigen/Eigenvalues>
+#include <Eigen/LU>
 #include <cmath>
 #include <map>
 
@@ -82,15 +83,27 @@ GyroAlignment alignGyro(const SlidingWindow& window) {
       std::vector<Eigen::Vector3d> normals;
       for (const auto& [a, u] : pair.rays) normals.push_back(a.cross(R * u));
       const Eigen::Vector3d t = translationDirection(normals, kWidth_rad);
+      const Eigen::Matrix<double, 3, 2> across = tangentBasis(t);
+      Eigen::Matrix2d Htt = Eigen::Matrix2d::Identity() * 1e-12;
+      Eigen::Matrix<double, 3, 2> Hbt = Eigen::Matrix<double, 3, 2>::Zero();
+      Eigen::Vector2d bt = Eigen::Vector2d::Zero();
       for (std::size_t i = 0; i < normals.size(); ++i) {
         const double e = t.dot(normals[i]), scaled = e / kWidth_rad, w = 1 / (1 + scaled * scaled);
         // t . (a x dR u),  dR u = -R [u]x dtheta
         const Eigen::RowVector3d J = -t.transpose() * skew(pair.rays[i].first) * R * skew(pair.rays[i].second) * d_theta;
+        const Eigen::RowVector2d Jt = normals[i].transpose() * across;
         H += w * J.transpose() * J;
         b += w * J.transpose() * e;
+        Htt += w * Jt.transpose() * Jt;
+        Hbt += w * J.transpose() * Jt;
+        bt += w * Jt.transpose() * e;
         sum += w * e * e;
         weights += w;
       }
+      // the translation's direction follows the bias: eliminated, else the two would only creep along together
+      const Eigen::Matrix<double, 3, 2> gain = Hbt * Htt.inverse();
+      H -= gain * Hbt.transpose();
+      b -= gain * bt;
     }
     const Eigen::Vector3d step = -H.ldlt().solve(b);
     result.bias_gyro += step;

@@ -156,6 +156,10 @@ bool triangulateLine(const SlidingWindow& window, const EstimatorParams& params,
   if (track.sightings.size() < 2) return false;
   track.origin_w = window.T_w_c(window.frame(track.sightings.back().frame)).p;
   if (!intersectPlanes(window, track)) return false;
+  // A line that is far from being determined is not worth refining: its cheap estimate says so already.
+  updateLineUncertainty(window, params, track);
+  constexpr double kHopeless = 3;
+  if (track.sigma_direction_rad > kHopeless * params.landmarks.line_max_sigma_direction_rad) return track.triangulated = true;
   refine(window, params.factors, track);
   if (!(lineError(window, track) < params.landmarks.line_max_error_px)) return false;
   track.triangulated = true;
