@@ -26,6 +26,13 @@ struct SeenSegment {
   double distance_m = 0;
 };
 
+/// Whether a ray meets the line steeply enough to say where along it: at grazing angles a small error of the direction
+/// moves the meeting point far.
+bool meetsSteeply(const Eigen::Vector3d& end_c, const Eigen::Vector3d& d_c, double sigma_direction_rad) {
+  constexpr double kLeastSine = 0.05, kSigmas = 3;
+  return end_c.normalized().cross(d_c).norm() > std::max(kLeastSine, kSigmas * sigma_direction_rad);
+}
+
 std::optional<SeenSegment> seenSegment(const RetiredLine& line, const Keyframes& keyframes, const Rig& rig,
                                        double coverage) {
   const Eigen::Vector3d d_w = line.line_w.d.normalized(), foot_w = line.line_w.nearestPoint();
@@ -40,7 +47,8 @@ std::optional<SeenSegment> seenSegment(const RetiredLine& line, const Keyframes&
     Eigen::Vector3d ends_c[2];
     if (!closestPointToRay(line_c, rig.camera.normalise(s.start_px), ends_c[0]) ||
         !closestPointToRay(line_c, rig.camera.normalise(s.end_px), ends_c[1]) || ends_c[0].z() < 0.05 ||
-        ends_c[1].z() < 0.05)
+        ends_c[1].z() < 0.05 || !meetsSteeply(ends_c[0], d_c, line.sigma_direction_rad) ||
+        !meetsSteeply(ends_c[1], d_c, line.sigma_direction_rad))
       continue;
     const auto along = [&](const Eigen::Vector3d& e_c) { return (T_w_c * e_c - foot_w).dot(d_w); };
     intervals.emplace_back(along(ends_c[0]), along(ends_c[1]));
