@@ -144,8 +144,7 @@ class LintelVio {
     AtomicFile::writeWhole((out / "config.yaml").string(), map.configuration);
     writeMap(map, (out / "map.lintel").string());
     for (const std::string& extension : exports_)
-      for (const std::string& file : exportMap(map, (out / ("map." + extension)).string()).files)
-        exported_.push_back(file);
+      exported_.push_back(exportMap(map, (out / ("map." + extension)).string()).files.front());
     AtomicFile::writeWhole((out / "stats.json").string(), statisticsJson(result, wall_s, warnings));
   }
 
