@@ -100,7 +100,7 @@ TEST(GravityAlignment, NoiseAndOutliersCostLittle) {
     ASSERT_TRUE(result.ok);
     const AlignmentError error = errorOf(result, flight.truth(first));
     EXPECT_LT(error.gravity_rad, 0.05) << "from frame " << first;
-    EXPECT_LT(error.velocity_m_s, 0.15) << "from frame " << first;
+    EXPECT_LT(error.velocity_m_s, 0.3) << "from frame " << first;
   }
 }
 

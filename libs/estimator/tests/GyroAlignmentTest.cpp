@@ -43,7 +43,7 @@ TEST(GyroAlignment, FindsItFromNoisyTracks) {
 }
 
 TEST(GyroAlignment, OutliersDoNotPullIt) {
-  const TrackedFlight flight = flightWithBias(0.5, 0.1);
+  const TrackedFlight flight = flightWithBias(0.5, 0.05);
   const GyroAlignment result = alignGyro(bufferOf(flight, 0, 20));
   ASSERT_TRUE(result.ok);
   EXPECT_LT((result.bias_gyro - flight.truth(0).bias_gyro).norm(), 0.015);
@@ -63,8 +63,7 @@ TEST(IntegratedRotations, AreTheTrueOnesRelativeToTheFirst) {
   const auto R_b0_bk = integratedRotations(bufferOf(flight, 0, 20));
   ASSERT_EQ(R_b0_bk.size(), 20u);
   for (std::size_t k = 0; k < R_b0_bk.size(); ++k) {
-    const Eigen::Quaterniond truth =
-        flight.truth(0).state.T_w_b.q.conjugate() * flight.truth(2 * k).state.T_w_b.q;
+    const Eigen::Quaterniond truth = flight.truth(0).state.T_w_b.q.conjugate() * flight.truth(2 * k).state.T_w_b.q;
     EXPECT_LT(R_b0_bk[k].angularDistance(truth), 1e-4);
   }
 }

@@ -46,8 +46,8 @@ ImuSimulatorParams perfectImu();
 TrackedFlight fly(const ImuSimulatorParams& imu, TrackSimulationParams tracks = {},
                   const Trajectory& trajectory = FigureTrajectory());
 
-/// `count` window frames, every `step`th frame of the flight from `first` on, pre-integrated with zero biases; no states,
-/// as the estimator's buffer before initialisation. Frame ids count from 0.
+/// `count` window frames, every `step`th frame of the flight from `first` on, pre-integrated with zero biases; no
+/// states, as the estimator's buffer before initialisation. Frame ids count from 0.
 SlidingWindow bufferOf(const TrackedFlight& flight, std::size_t first, std::size_t count, std::size_t step = 2);
 
 /// The same with the true states (poses, velocities, biases).

@@ -72,6 +72,19 @@ std::vector<Sighting> inKeyframes(const std::vector<Sighting>& sightings, const 
   return result;
 }
 
+/// Ascending ids. A track that outlived a restart of the estimator is there once a world: the first keeps the track's
+/// id, the others get ids beyond all tracks'.
+template <class Landmark>
+void orderById(std::vector<Landmark>& landmarks) {
+  const auto by_id = [](const Landmark& a, const Landmark& b) { return a.id < b.id; };
+  std::stable_sort(landmarks.begin(), landmarks.end(), by_id);
+  std::set<std::uint64_t> taken;
+  std::uint64_t next = landmarks.empty() ? 0 : landmarks.back().id + 1;
+  for (Landmark& landmark : landmarks)
+    if (!taken.insert(landmark.id).second) landmark.id = next++;
+  std::stable_sort(landmarks.begin(), landmarks.end(), by_id);
+}
+
 }  // namespace
 
 LineMap MapBuilder::build() const {
@@ -114,9 +127,8 @@ LineMap MapBuilder::build() const {
     for (const LineSighting& s : sightings) l.observations.push_back({s.frame, s.start_px, s.end_px});
     map.lines.push_back(std::move(l));
   }
-  const auto by_id = [](const auto& a, const auto& b) { return a.id < b.id; };
-  std::stable_sort(map.points.begin(), map.points.end(), by_id);
-  std::stable_sort(map.lines.begin(), map.lines.end(), by_id);
+  orderById(map.points);
+  orderById(map.lines);
   return map;
 }
 

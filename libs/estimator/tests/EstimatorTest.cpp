@@ -1,0 +1,280 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "lintel/estimator/Estimator.h"
+
+#include <gmock/gmock.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <set>
+
+#include "TestWindow.h"
+#include "lintel/geometry/Alignment.h"
+#include "lintel/geometry/Rotation.h"
+
+namespace lintel {
+namespace {
+
+using namespace test;
+
+/// Everything an estimator said about a flight; the last update is finish()'s.
+std::vector<WindowUpdate> run(const TrackedFlight& flight, const EstimatorParams& params = {}, bool lines = true) {
+  Estimator estimator(flight.rig, params);
+  std::vector<WindowUpdate> updates;
+  for (const SimulatedFrame& frame : flight.sim.frames) {
+    FrameTracks tracks = frame.tracks;
+    if (!lines) tracks.lines.clear();
+    updates.push_back(estimator.process(tracks, frame.imu));
+  }
+  updates.push_back(estimator.finish());
+  return updates;
+}
+
+/// Root mean square position error of the causal trajectory after alignment of position and yaw [m].
+double positionError(const std::vector<WindowUpdate>& updates, const TrackedFlight& flight) {
+  std::vector<Eigen::Vector3d> estimate, truth;
+  for (std::size_t k = 0; k < flight.sim.frames.size(); ++k)
+    if (updates[k].hasPose()) {
+      estimate.push_back(updates[k].T_w_b.p);
+      truth.push_back(flight.truth(k).state.T_w_b.p);
+    }
+  const Similarity T = alignPositions(AlignmentKind::kYaw, estimate, truth);
+  double sum = 0;
+  for (std::size_t i = 0; i < truth.size(); ++i) sum += (T * estimate[i] - truth[i]).squaredNorm();
+  return std::sqrt(sum / static_cast<double>(truth.size()));
+}
+
+int posesOf(const std::vector<WindowUpdate>& updates) {
+  return static_cast<int>(std::count_if(updates.begin(), updates.end(), [](const auto& u) { return u.hasPose(); }));
+}
+
+int lostOf(const std::vector<WindowUpdate>& updates) {
+  return static_cast<int>(
+      std::count_if(updates.begin(), updates.end(), [](const auto& u) { return u.status == EstimatorStatus::kLost; }));
+}
+
+TrackSimulationParams tracksFor(double duration_s, double noise_px) {
+  TrackSimulationParams tracks;
+  tracks.duration_s = duration_s;
+  tracks.max_points_per_frame = 80;
+  tracks.max_lines_per_frame = 25;
+  tracks.point_noise_px = tracks.line_noise_px = noise_px;
+  return tracks;
+}
+
+/// The calibration of a simulated flight is perfect: what is left of the error is the estimator's.
+EstimatorParams withoutCalibration() {
+  EstimatorParams params;
+  params.calibration.refine_camera = params.calibration.refine_extrinsics = params.calibration.refine_time_offset =
+      false;
+  return params;
+}
+
+/// Keyframes are handed over once, landmarks once between two starts.
+void expectEachIdOnce(const std::vector<WindowUpdate>& updates) {
+  std::set<FrameId> keyframes;
+  std::set<TrackId> points, lines;
+  for (const WindowUpdate& u : updates) {
+    // a new start has a new world: what is still tracked is estimated and handed over again
+    for (const auto& k : u.keyframes) EXPECT_TRUE(keyframes.insert(k.id).second) << "keyframe " << k.id << " twice";
+    for (const auto& p : u.points) EXPECT_TRUE(points.insert(p.id).second) << "point " << p.id << " twice";
+    for (const auto& l : u.lines) EXPECT_TRUE(lines.insert(l.id).second) << "line " << l.id << " twice";
+    if (u.status == EstimatorStatus::kLost) points.clear(), lines.clear();
+  }
+}
+
+TEST(Estimator, FollowsAPerfectFlightToACentimetre) {
+  const TrackedFlight flight = fly(perfectImu(), tracksFor(10, 0));
+  const auto updates = run(flight, withoutCalibration());
+  EXPECT_EQ(lostOf(updates), 0);
+  EXPECT_GT(posesOf(updates), 160);
+  EXPECT_LT(positionError(updates, flight), 0.01);
+}
+
+TEST(Estimator, FollowsANoisyFlight) {
+  const TrackedFlight flight = fly(ImuSimulatorParams{}, tracksFor(10, 0.5));
+  const auto updates = run(flight);
+  EXPECT_EQ(lostOf(updates), 0);
+  EXPECT_GT(posesOf(updates), 160);
+  EXPECT_LT(positionError(updates, flight), 0.05);
+  for (std::size_t k = 0; k < flight.sim.frames.size(); ++k) {
+    if (updates[k].status != EstimatorStatus::kTracking || k < 100) continue;
+    const Eigen::Vector3d up = Eigen::Vector3d::UnitZ();
+    EXPECT_LT((updates[k].T_w_b.q.conjugate() * up).cross(flight.truth(k).state.T_w_b.q.conjugate() * up).norm(), 0.02);
+    EXPECT_LT((updates[k].bias.gyro - flight.truth(k).bias_gyro).norm(), 0.01);
+    EXPECT_NEAR(updates[k].v_w_b.norm(), flight.truth(k).state.v_w_b.norm(), 0.1);
+  }
+}
+
+TEST(Estimator, LinesDoNotMakeItWorse) {
+  double with = 0, without = 0;
+  for (const std::uint64_t seed : {2u, 3u, 4u, 5u}) {
+    ImuSimulatorParams imu;
+    imu.seed = seed;
+    TrackSimulationParams tracks = tracksFor(5, 0.5);
+    tracks.seed = seed;
+    tracks.max_points_per_frame = 40;
+    const TrackedFlight flight = fly(imu, tracks);
+    with += positionError(run(flight), flight);
+    without += positionError(run(flight, {}, false), flight);
+  }
+  EXPECT_LT(with, 1.25 * without);  // the mean over more seeds and longer flights is within 10 %
+}
+
+TEST(Estimator, RetiredLandmarksAreWhereTheyAre) {
+  const TrackedFlight flight = fly(perfectImu(), tracksFor(8, 0));
+  const auto updates = run(flight, withoutCalibration());
+  // the world of the estimate is the true one moved and turned about z
+  std::vector<Eigen::Vector3d> estimate, truth;
+  for (std::size_t k = 0; k < flight.sim.frames.size(); ++k)
+    if (updates[k].hasPose()) {
+      estimate.push_back(updates[k].T_w_b.p);
+      truth.push_back(flight.truth(k).state.T_w_b.p);
+    }
+  const Similarity T = alignPositions(AlignmentKind::kYaw, estimate, truth);
+  int points = 0, lines = 0;
+  for (const WindowUpdate& u : updates) {
+    for (const RetiredPoint& p : u.points) {
+      const Eigen::Vector3d error = T * p.p_w - flight.sim.points_w[flight.sim.point_of_track[p.id]];
+      EXPECT_LT(error.norm(), 0.05 + 3 * p.sigma_distance_m) << "point " << p.id;
+      ++points;
+    }
+    for (const RetiredLine& l : u.lines) {
+      if (l.degenerate) continue;
+      const Segment3& segment = flight.sim.lines_w[flight.sim.line_of_track[l.id]];
+      EXPECT_LT(lineAngle(T.T_a_b.q * l.line_w.d, segment.direction()), 0.02 + 3 * l.sigma_direction_rad);
+      const Eigen::Vector3d foot = T * l.line_w.nearestPoint(), d = T.T_a_b.q * l.line_w.d.normalized();
+      EXPECT_LT((segment.midpoint() - foot).cross(d).norm(), 0.05 + 3 * l.sigma_distance_m) << "line " << l.id;
+      ++lines;
+    }
+  }
+  EXPECT_GT(points, 200);
+  EXPECT_GT(lines, 8);
+}
+
+TEST(Estimator, HandsOverEverythingOnce) {
+  const TrackedFlight flight = fly(ImuSimulatorParams{}, tracksFor(5, 0.5));
+  const auto updates = run(flight);
+  expectEachIdOnce(updates);
+  const WindowUpdate& last = updates.back();
+  EXPECT_GE(last.keyframes.size(), 5u) << "the window is handed over at the end";
+  EXPECT_FALSE(last.points.empty());
+  std::set<FrameId> known;
+  for (const WindowUpdate& u : updates)
+    for (const auto& k : u.keyframes) known.insert(k.id);
+  for (const WindowUpdate& u : updates)
+    for (const auto& p : u.points)
+      for (const PointSighting& s : p.sightings) EXPECT_TRUE(known.count(s.frame)) << "a sighting in no keyframe";
+}
+
+TEST(Estimator, FinishTwiceIsNothingMore) {
+  const TrackedFlight flight = fly(perfectImu(), tracksFor(3, 0));
+  Estimator estimator(flight.rig, {});
+  for (const SimulatedFrame& frame : flight.sim.frames) estimator.process(frame.tracks, frame.imu);
+  EXPECT_FALSE(estimator.finish().keyframes.empty());
+  const WindowUpdate again = estimator.finish();
+  EXPECT_TRUE(again.keyframes.empty() && again.points.empty() && again.lines.empty());
+}
+
+TEST(Estimator, TwoRunsGiveTheSameBits) {
+  TrackSimulationParams tracks = tracksFor(3.5, 0.5);
+  tracks.outlier_share = 0.02;
+  const TrackedFlight flight = fly(ImuSimulatorParams{}, tracks);
+  const auto a = run(flight), b = run(flight);
+  ASSERT_EQ(a.size(), b.size());
+  for (std::size_t k = 0; k < a.size(); ++k) {
+    ASSERT_EQ(a[k].status, b[k].status);
+    ASSERT_EQ(std::memcmp(a[k].T_w_b.p.data(), b[k].T_w_b.p.data(), 3 * sizeof(double)), 0) << "frame " << k;
+    ASSERT_EQ(std::memcmp(a[k].T_w_b.q.coeffs().data(), b[k].T_w_b.q.coeffs().data(), 4 * sizeof(double)), 0);
+    ASSERT_EQ(a[k].points.size(), b[k].points.size());
+    for (std::size_t i = 0; i < a[k].points.size(); ++i) ASSERT_EQ(a[k].points[i].p_w, b[k].points[i].p_w);
+    ASSERT_EQ(a[k].lines.size(), b[k].lines.size());
+    for (std::size_t i = 0; i < a[k].lines.size(); ++i) ASSERT_EQ(a[k].lines[i].line_w.n, b[k].lines[i].line_w.n);
+  }
+  EXPECT_GT(posesOf(a), 30);
+}
+
+TEST(Estimator, AnImuGapIsAFailureAndItStartsAgainWhereItWas) {
+  TrackedFlight flight = fly(ImuSimulatorParams{}, tracksFor(6, 0.3));
+  const std::size_t gap = 60;
+  flight.sim.frames[gap].imu.clear();
+  const auto updates = run(flight);
+  ASSERT_TRUE(updates[gap - 1].hasPose());
+  EXPECT_EQ(updates[gap].status, EstimatorStatus::kLost);
+  EXPECT_EQ(updates[gap].reason, "the IMU has a gap");
+  EXPECT_FALSE(updates[gap].keyframes.empty()) << "what was computed before is handed over";
+  EXPECT_FALSE(updates[gap].points.empty());
+  EXPECT_EQ(lostOf(updates), 1);
+  std::size_t again = gap + 1;
+  while (again < flight.sim.frames.size() && !updates[again].hasPose()) ++again;
+  ASSERT_LT(again, gap + 55) << "starts again";
+  EXPECT_NE(updates[gap + 5].reason, "");
+  // the second start continues at the last pose: the first frame of its window lies there
+  EXPECT_LT((updates[again].T_w_b.p - updates[gap - 1].T_w_b.p).norm(),
+            (flight.truth(again).state.T_w_b.p - flight.truth(gap).state.T_w_b.p).norm() + 1.0);
+  EXPECT_NEAR(updates[again].v_w_b.norm(), flight.truth(again).state.v_w_b.norm(), 0.2);
+  expectEachIdOnce(updates);
+}
+
+TEST(Estimator, StartsAtRestAndTakesOff) {
+  const DelayedStart resting(std::make_shared<FigureTrajectory>(), 3);
+  const TrackedFlight flight = fly(ImuSimulatorParams{}, tracksFor(7, 0.1), resting);
+  const auto updates = run(flight);
+  EXPECT_EQ(lostOf(updates), 0);
+  std::size_t first = 0;
+  while (first < updates.size() && !updates[first].hasPose()) ++first;
+  EXPECT_LE(first, 25u) << "a pose while it still rests";
+  EXPECT_TRUE(updates[first + 4].at_rest || updates[first + 5].at_rest);
+  EXPECT_LT(updates[40].v_w_b.norm(), 0.05);
+  EXPECT_LT((updates[48].T_w_b.p - updates[first].T_w_b.p).norm(), 0.03) << "drift while it rests";
+  EXPECT_LT(positionError(updates, flight), 0.05);
+}
+
+TEST(Estimator, PureRotationGivesNoPoseRatherThanAWrongOne) {
+  FigureParams turning;
+  turning.translation = 0;
+  const TrackedFlight flight = fly(ImuSimulatorParams{}, tracksFor(3, 0.5), FigureTrajectory(turning));
+  const auto updates = run(flight);
+  EXPECT_EQ(posesOf(updates), 0);
+  EXPECT_NE(updates[60].reason, "");
+}
+
+TEST(Estimator, BlindnessIsBridgedForAWhileAndThenAFailure) {
+  TrackedFlight flight = fly(ImuSimulatorParams{}, tracksFor(5.5, 0.3));
+  const std::size_t dark = 60;
+  const auto blindFor = [&](std::size_t frames) {
+    TrackedFlight f = flight;
+    for (std::size_t k = dark; k < dark + frames; ++k)
+      f.sim.frames[k].tracks.points.clear(), f.sim.frames[k].tracks.lines.clear();
+    return run(f);
+  };
+  const auto moment = blindFor(6);
+  EXPECT_EQ(lostOf(moment), 0);
+  EXPECT_TRUE(moment[dark + 5].hasPose());
+  EstimatorParams params;
+  const auto longer = blindFor(static_cast<std::size_t>(2 * params.failure.max_blind_frames + 6));
+  ASSERT_GE(lostOf(longer), 1);
+  for (const WindowUpdate& u : longer)
+    if (u.status == EstimatorStatus::kLost) {
+      EXPECT_NE(u.reason, "");
+      break;
+    }
+}
+
+TEST(Estimator, FramesBetweenWindowFramesArePropagated) {
+  const TrackedFlight flight = fly(perfectImu(), tracksFor(4, 0));
+  const auto updates = run(flight);
+  int propagated = 0;
+  for (std::size_t k = 40; k < flight.sim.frames.size(); ++k) {
+    const bool enters = k % 2 == 0;
+    EXPECT_EQ(updates[k].status, enters ? EstimatorStatus::kTracking : EstimatorStatus::kPropagated);
+    propagated += !enters;
+    // both kinds lie on one smooth path
+    const Eigen::Vector3d step = updates[k].T_w_b.p - updates[k - 1].T_w_b.p;
+    EXPECT_LT((step - 0.05 * updates[k].v_w_b).norm(), 0.02);
+  }
+  EXPECT_EQ(propagated, 20);
+}
+
+}  // namespace
+}  // namespace lintel

@@ -1,0 +1,220 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "lintel/mapping/MapBuilder.h"
+
+#include <gtest/gtest.h>
+
+#include <limits>
+#include <set>
+
+#include "lintel/geometry/Rotation.h"
+
+namespace lintel {
+namespace {
+
+/// Keyframes 0 to 4 along x, 0.5 m apart, looking along the world's z through a camera that is mounted turned.
+class MapBuilderTest : public testing::Test {
+ protected:
+  MapBuilderTest() {
+    rig_.camera = {752, 480, 458, 457, 367, 248, -0.28, 0.07, 2e-4, 2e-5};
+    rig_.T_b_c = {expRotation({0.1, 0.05, 1.5}), {-0.02, -0.06, 0.01}};
+    for (FrameId id = 0; id < 5; ++id) {
+      RetiredKeyframe k;
+      k.id = id;
+      k.t_ns = 1000 + static_cast<std::int64_t>(id) * 100;
+      k.T_w_b = Pose{Eigen::Quaterniond::Identity(), {0.5 * static_cast<double>(id), 0, 0}} * rig_.T_b_c.inverse();
+      update_.keyframes.push_back(k);
+    }
+  }
+
+  Eigen::Vector2d pixelOf(FrameId id, const Eigen::Vector3d& p_w) const {
+    return rig_.camera.project((update_.keyframes[id].T_w_b * rig_.T_b_c).inverse() * p_w);
+  }
+  LineSighting sightingOf(FrameId id, const Segment3& segment_w) const {
+    LineSighting s;
+    s.frame = id;
+    s.start_px = pixelOf(id, segment_w.start);
+    s.end_px = pixelOf(id, segment_w.end);
+    return s;
+  }
+  /// A well-known line seen whole from the first `count` keyframes.
+  RetiredLine lineOf(TrackId id, const Segment3& segment_w, FrameId count = 4) const {
+    RetiredLine line;
+    line.id = id;
+    line.line_w = lineThrough(segment_w.start, segment_w.end);
+    line.sigma_direction_rad = 0.01;
+    line.sigma_distance_m = 0.02;
+    for (FrameId k = 0; k < count; ++k) line.sightings.push_back(sightingOf(k, segment_w));
+    return line;
+  }
+  RetiredPoint pointOf(TrackId id, const Eigen::Vector3d& p_w, FrameId count = 4) const {
+    RetiredPoint point;
+    point.id = id;
+    point.p_w = p_w;
+    point.sigma_distance_m = 0.05;
+    for (FrameId k = 0; k < count; ++k) {
+      PointSighting s;
+      s.frame = k;
+      s.px = pixelOf(k, p_w);
+      point.sightings.push_back(s);
+    }
+    return point;
+  }
+  LineMap build() const {
+    MapBuilder builder(rig_, params_);
+    builder.add(update_);
+    return builder.build();
+  }
+
+  const Segment3 upright_{{0.8, -0.7, 4}, {0.9, 0.6, 4.1}};
+  Rig rig_;
+  MapParams params_;
+  WindowUpdate update_;
+};
+
+TEST_F(MapBuilderTest, SegmentEndsAreWhereTheyWereSeen) {
+  update_.lines = {lineOf(3, upright_)};
+  const LineMap map = build();
+  ASSERT_EQ(map.lines.size(), 1u);
+  const MapLine& line = map.lines[0];
+  EXPECT_EQ(line.id, 3u);
+  EXPECT_LT((line.segment_w.start - upright_.start).norm(), 1e-6);
+  EXPECT_LT((line.segment_w.end - upright_.end).norm(), 1e-6);
+  EXPECT_EQ(line.first_t_ns, 1000);
+  EXPECT_EQ(line.last_t_ns, 1300);
+  ASSERT_EQ(line.observations.size(), 4u);
+  EXPECT_EQ(line.observations[2].keyframe_id, 2u);
+  EXPECT_EQ(line.observations[2].start_px, update_.lines[0].sightings[2].start_px);
+  EXPECT_EQ(line.sigma_direction_rad, 0.01);
+  EXPECT_EQ(line.sigma_distance_m, 0.02);
+}
+
+TEST_F(MapBuilderTest, StartAndEndKeepTheOrderOfTheObservations) {
+  RetiredLine line = lineOf(3, {upright_.end, upright_.start});
+  line.line_w = lineThrough(upright_.start, upright_.end);  // the estimate's direction is arbitrary
+  update_.lines = {line};
+  const LineMap map = build();
+  ASSERT_EQ(map.lines.size(), 1u);
+  EXPECT_LT((map.lines[0].segment_w.start - upright_.end).norm(), 1e-6);
+}
+
+TEST_F(MapBuilderTest, AnOutlierDoesNotLengthenASegment) {
+  RetiredLine line = lineOf(3, upright_);
+  const Eigen::Vector3d beyond = upright_.end + 0.8 * (upright_.end - upright_.start);
+  line.sightings[1].end_px = pixelOf(1, beyond);
+  update_.lines = {line};
+  const LineMap map = build();
+  ASSERT_EQ(map.lines.size(), 1u);
+  EXPECT_NEAR(map.lines[0].segment_w.length(), upright_.length(), 1e-6);
+}
+
+TEST_F(MapBuilderTest, PiecesSeenOneAfterTheOtherAddUp) {
+  const auto piece = [&](double from, double to) {
+    const Eigen::Vector3d d = upright_.end - upright_.start;
+    return Segment3{upright_.start + from * d, upright_.start + to * d};
+  };
+  RetiredLine line = lineOf(3, upright_, 0);
+  line.sightings = {sightingOf(0, piece(0, 0.5)), sightingOf(1, piece(0, 0.7)), sightingOf(2, piece(0.4, 1)),
+                    sightingOf(3, piece(0.5, 1))};
+  update_.lines = {line};
+  const LineMap map = build();
+  ASSERT_EQ(map.lines.size(), 1u);
+  EXPECT_NEAR(map.lines[0].segment_w.length(), upright_.length(), 1e-6);
+}
+
+TEST_F(MapBuilderTest, LinesWithoutEvidenceAreLeftOut) {
+  RetiredLine degenerate = lineOf(1, upright_), few = lineOf(2, upright_, 2), turned = lineOf(3, upright_),
+              displaced = lineOf(4, upright_), unknown = lineOf(5, upright_),
+              dot = lineOf(6, {{0.8, 0, 4}, {0.8, 0.01, 4}}), good = lineOf(7, upright_);
+  degenerate.degenerate = true;
+  turned.sigma_direction_rad = 1.01 * params_.max_sigma_direction_rad;
+  displaced.sigma_distance_m = 5 * params_.max_relative_sigma;  // seen from about 4 m
+  unknown.sigma_distance_m = std::numeric_limits<double>::quiet_NaN();
+  update_.lines = {degenerate, few, turned, displaced, unknown, dot, good};
+  const LineMap map = build();
+  ASSERT_EQ(map.lines.size(), 1u);
+  EXPECT_EQ(map.lines[0].id, 7u);
+}
+
+TEST_F(MapBuilderTest, PointsWithoutEvidenceAreLeftOut) {
+  RetiredPoint few = pointOf(1, {0.5, 0.2, 4}, 2), vague = pointOf(2, {0.5, 0.2, 4}), good = pointOf(3, {0.6, 0.1, 5});
+  vague.sigma_distance_m = 5 * params_.point_max_relative_sigma;
+  update_.points = {few, vague, good};
+  const LineMap map = build();
+  ASSERT_EQ(map.points.size(), 1u);
+  EXPECT_EQ(map.points[0].id, 3u);
+  EXPECT_EQ(map.points[0].p_w, Eigen::Vector3d(0.6, 0.1, 5));
+  EXPECT_EQ(map.points[0].first_t_ns, 1000);
+  EXPECT_EQ(map.points[0].last_t_ns, 1300);
+  EXPECT_EQ(map.points[0].observations.size(), 4u);
+}
+
+TEST_F(MapBuilderTest, SightingsInFramesThatAreNoKeyframesDoNotCount) {
+  RetiredLine line = lineOf(1, upright_, 3);
+  for (FrameId unknown : {70u, 71u}) {
+    line.sightings.push_back(line.sightings[0]);
+    line.sightings.back().frame = unknown;
+  }
+  update_.lines = {line};
+  const LineMap map = build();
+  ASSERT_EQ(map.lines.size(), 1u);
+  EXPECT_EQ(map.lines[0].observations.size(), 3u);
+  EXPECT_EQ(map.lines[0].last_t_ns, 1200);
+}
+
+TEST_F(MapBuilderTest, IdsAscendInEveryList) {
+  update_.lines = {lineOf(9, upright_), lineOf(2, upright_), lineOf(5, upright_)};
+  update_.points = {pointOf(8, {0.5, 0.2, 4}), pointOf(1, {0.6, 0.1, 5})};
+  std::swap(update_.keyframes[0], update_.keyframes[4]);
+  const LineMap map = build();
+  ASSERT_EQ(map.lines.size(), 3u);
+  EXPECT_LT(map.lines[0].id, map.lines[1].id);
+  EXPECT_LT(map.lines[1].id, map.lines[2].id);
+  ASSERT_EQ(map.points.size(), 2u);
+  EXPECT_LT(map.points[0].id, map.points[1].id);
+  ASSERT_EQ(map.keyframes.size(), 5u);
+  for (std::size_t i = 0; i < 5; ++i) EXPECT_EQ(map.keyframes[i].id, i);
+}
+
+TEST_F(MapBuilderTest, ATrackThatOutlivesARestartGetsAnIdOfItsOwn) {
+  // after a failure the estimator has a new world: the same track is handed over again, as another line and point
+  update_.lines = {lineOf(5, upright_), lineOf(9, upright_), lineOf(5, {{0.2, -0.7, 3}, {0.2, 0.6, 3}})};
+  update_.points = {pointOf(5, {0.5, 0.2, 4}), pointOf(5, {0.6, 0.1, 5}), pointOf(6, {0.6, 0.3, 5})};
+  const LineMap map = build();
+  ASSERT_EQ(map.lines.size(), 3u);
+  ASSERT_EQ(map.points.size(), 3u);
+  std::set<std::uint64_t> lines, points;
+  for (std::size_t i = 0; i < 3; ++i) {
+    EXPECT_TRUE(lines.insert(map.lines[i].id).second) << map.lines[i].id;
+    EXPECT_TRUE(points.insert(map.points[i].id).second) << map.points[i].id;
+    if (i > 0) {
+      EXPECT_TRUE(map.lines[i - 1].id < map.lines[i].id && map.points[i - 1].id < map.points[i].id);
+    }
+  }
+  EXPECT_LT((map.lines[0].segment_w.start - upright_.start).norm(), 1e-6) << "the first keeps its id";
+  EXPECT_EQ(map.lines[0].id, 5u);
+}
+
+TEST_F(MapBuilderTest, KeepsTheTrajectoryAndTheLastRig) {
+  MapBuilder builder(rig_, params_);
+  WindowUpdate a, b, c;
+  a.t_ns = 1;
+  a.status = EstimatorStatus::kTracking;
+  a.T_w_b.p = {1, 2, 3};
+  b.t_ns = 2;
+  b.status = EstimatorStatus::kInitializing;
+  c.t_ns = 3;
+  c.status = EstimatorStatus::kPropagated;
+  for (const WindowUpdate& update : {a, b, c}) builder.add(update);
+  Rig refined = rig_;
+  refined.camera.fx += 1;
+  builder.setRig(refined);
+  const LineMap map = builder.build();
+  ASSERT_EQ(map.trajectory.size(), 2u);
+  EXPECT_EQ(map.trajectory[0].first, 1);
+  EXPECT_EQ(map.trajectory[0].second.p, Eigen::Vector3d(1, 2, 3));
+  EXPECT_EQ(map.trajectory[1].first, 3);
+  EXPECT_EQ(map.rig.camera.fx, refined.camera.fx);
+}
+
+}  // namespace
+}  // namespace lintel
