@@ -9,6 +9,7 @@
 #include "KeyframeSelection.h"
 #include "LineTriangulation.h"
 #include "OutlierRejection.h"
+#include "ParamsCheck.h"
 #include "PointTriangulation.h"
 #include "WindowMarginalization.h"
 #include "WindowRetirement.h"
@@ -288,7 +289,7 @@ WindowUpdate Estimator::Impl::finish() {
   return update;
 }
 
-Estimator::Estimator(const Rig& rig, const EstimatorParams& params) : impl_(std::make_unique<Impl>(rig, params)) {}
+Estimator::Estimator(const Rig& rig, const EstimatorParams& params) : impl_((checkParams(params), std::make_unique<Impl>(rig, params))) {}
 Estimator::~Estimator() = default;
 Estimator::Estimator(Estimator&&) noexcept = default;
 Estimator& Estimator::operator=(Estimator&&) noexcept = default;

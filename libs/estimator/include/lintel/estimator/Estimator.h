@@ -23,6 +23,7 @@ struct CalibrationEstimate {
 /// Deterministic.
 class Estimator {
  public:
+  /// Throws std::invalid_argument, naming the parameter, when one is out of range.
   Estimator(const Rig& rig, const EstimatorParams& params);
   ~Estimator();
   Estimator(Estimator&&) noexcept;
