@@ -1,0 +1,234 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// lintel-vio in process on a short simulated recording, which all cases share.
+#include "lintel/programs/LintelVio.h"
+
+#include <gmock/gmock.h>
+
+#include <algorithm>
+#include <fstream>
+#include <memory>
+#include <nlohmann/json.hpp>
+
+#include "VioTestRuns.h"
+#include "lintel/evaluation/TrajectoryErrors.h"
+#include "lintel/mapping/MapFile.h"
+#include "lintel/simulation/Simulation.h"
+
+namespace lintel {
+namespace {
+
+namespace fs = std::filesystem;
+using namespace test;
+using testing::HasSubstr;
+using testing::StartsWith;
+
+constexpr double kDuration_s = 4;
+
+class LintelVioTest : public testing::Test {
+ protected:
+  /// The recording, and the run on it that the others are compared with.
+  static void SetUpTestSuite() {
+    work_ = std::make_unique<WorkFolder>();
+    SimulationParams params;
+    params.duration_s = kDuration_s;
+    params.threads = 2;
+    Simulation(params).write(recording());
+    reference_ =
+        runVio({recording(), "-o", out("reference"), "-c", eurocConfig(), "--export", "none", "--threads", "1"});
+  }
+  static void TearDownTestSuite() { work_.reset(); }
+
+  void SetUp() override { ASSERT_EQ(reference_.exit_code, 0) << reference_.err; }
+
+  static std::string recording() { return *work_ / "recording"; }
+  static std::string out(const std::string& name) { return *work_ / ("out_" + name); }
+
+  static ProgramRun run(const std::string& input, const std::string& name, std::vector<std::string> more = {}) {
+    more.insert(more.begin(), {input, "-o", out(name), "-c", eurocConfig(), "--export", "none", "--quiet"});
+    return runVio(more);
+  }
+  static void expectSameAsReference(const std::string& name) {
+    for (const char* file : {"/trajectory.tum", "/map.lintel"}) {
+      EXPECT_FALSE(bytesOf(out(name) + file).empty());
+      EXPECT_TRUE(bytesOf(out(name) + file) == bytesOf(out("reference") + file)) << file << " differs in " << name;
+    }
+  }
+  /// One line on stderr that starts with the program's name and contains `what`.
+  static void expectOneLine(const ProgramRun& run, const std::string& what) {
+    EXPECT_THAT(run.err, StartsWith("lintel-vio: "));
+    EXPECT_THAT(run.err, HasSubstr(what));
+    EXPECT_EQ(std::count(run.err.begin(), run.err.end(), '\n'), 1) << run.err;
+  }
+  /// A copy of the recording with its own files (no links).
+  static std::string copyOfRecording(const std::string& name) {
+    const std::string copy = *work_ / name;
+    fs::copy(recording(), copy, fs::copy_options::recursive | fs::copy_options::overwrite_existing);
+    return copy;
+  }
+  /// A run that broke off: what was computed until then is there and fits together.
+  static void expectKept(const std::string& name) {
+    const StampedPoses part = readTrajectory(out(name) + "/trajectory.tum");
+    const StampedPoses whole = readTrajectory(out("reference") + "/trajectory.tum");
+    ASSERT_FALSE(part.empty());
+    ASSERT_LT(part.size(), whole.size());
+    for (std::size_t i = 0; i < part.size(); ++i) {
+      EXPECT_EQ(part[i].first, whole[i].first);
+      EXPECT_EQ(part[i].second.p, whole[i].second.p) << "pose " << i;
+    }
+    EXPECT_EQ(readMap(out(name) + "/map.lintel").trajectory.size(), part.size());
+    const auto statistics = nlohmann::json::parse(bytesOf(out(name) + "/stats.json"));
+    EXPECT_NE(statistics["ended_early"], "");
+  }
+
+  static inline std::unique_ptr<WorkFolder> work_;
+  static inline ProgramRun reference_;
+};
+
+TEST_F(LintelVioTest, WritesWhatItPromisesAndSaysSo) {
+  const StampedPoses trajectory = readTrajectory(out("reference") + "/trajectory.tum");
+  EXPECT_GE(trajectory.size(), 30u);
+  const LineMap map = readMap(out("reference") + "/map.lintel");
+  EXPECT_EQ(map.trajectory.size(), trajectory.size());
+  EXPECT_GT(map.keyframes.size(), 3u);
+  EXPECT_GT(map.points.size(), 20u);
+  EXPECT_EQ(map.configuration, bytesOf(out("reference") + "/config.yaml"));
+  const auto statistics = nlohmann::json::parse(bytesOf(out("reference") + "/stats.json"));
+  EXPECT_EQ(statistics["frames"], kDuration_s * 20);
+  EXPECT_EQ(statistics["frames_with_pose"], trajectory.size());
+  EXPECT_EQ(statistics["map_lines"], map.lines.size());
+  EXPECT_EQ(statistics["ended_early"], "");
+  EXPECT_THAT(reference_.out, HasSubstr(std::to_string(trajectory.size()) + " with a pose"));
+  EXPECT_THAT(reference_.out, HasSubstr("trajectory.tum"));
+}
+
+TEST_F(LintelVioTest, FollowsTheTruth) {
+  const TrajectoryErrors errors =
+      evaluateTrajectory(readTrajectory(out("reference") + "/trajectory.tum"),
+                         readTrajectory(recording() + "/mav0/state_groundtruth_estimate0/data.csv"));
+  EXPECT_LT(errors.position_m.rmse, 0.05);
+}
+
+TEST_F(LintelVioTest, ThreadsDoNotChangeAByte) {
+  ASSERT_EQ(run(recording(), "threads2", {"--threads", "2"}).exit_code, 0);
+  expectSameAsReference("threads2");
+}
+
+TEST_F(LintelVioTest, ARawlogWithImageFilesGivesTheSameBytes) {
+  ASSERT_EQ(runConverter({"-q", "-i", recording(), "-o", *work_ / "external.rawlog"}).exit_code, 0);
+  const ProgramRun r = run(*work_ / "external.rawlog", "external");
+  ASSERT_EQ(r.exit_code, 0) << r.err;
+  EXPECT_TRUE(bytesOf(out("external") + "/trajectory.tum") == bytesOf(out("reference") + "/trajectory.tum"));
+  expectSameAsReference("external");
+}
+
+TEST_F(LintelVioTest, ARawlogWithImagesInsideGivesTheSameBytes) {
+  ASSERT_EQ(runConverter({"-q", "--embed", "-z", "1", "-i", recording(), "-o", *work_ / "embedded.rawlog"}).exit_code,
+            0);
+  const ProgramRun r = run(*work_ / "embedded.rawlog", "embedded");
+  ASSERT_EQ(r.exit_code, 0) << r.err;
+  expectSameAsReference("embedded");
+}
+
+TEST_F(LintelVioTest, ATruncatedRawlogKeepsWhatWasComputed) {
+  const std::string rawlog = *work_ / "cut.rawlog";
+  ASSERT_EQ(runConverter({"-q", "--embed", "-z", "1", "-i", recording(), "-o", rawlog}).exit_code, 0);
+  fs::resize_file(rawlog, fs::file_size(rawlog) * 3 / 4);
+  const ProgramRun r = run(rawlog, "cut");
+  EXPECT_EQ(r.exit_code, 1);
+  expectOneLine(r, "cut.rawlog");
+  EXPECT_THAT(r.err, HasSubstr("what was computed until then is in " + out("cut")));
+  expectKept("cut");
+}
+
+TEST_F(LintelVioTest, ADamagedImuFileKeepsWhatWasComputed) {
+  const std::string damaged = copyOfRecording("damaged_imu");
+  const std::string path = damaged + "/mav0/imu0/data.csv";
+  std::string text = bytesOf(path);
+  const std::size_t line = text.find('\n', text.size() * 3 / 4) + 1;
+  text.replace(line, 10, "something ");
+  std::ofstream(path) << text;
+  const ProgramRun r = run(damaged, "damaged_imu");
+  EXPECT_EQ(r.exit_code, 1);
+  expectOneLine(r, "imu0/data.csv:");
+  expectKept("damaged_imu");
+}
+
+TEST_F(LintelVioTest, ACutImageIsLeftOutWithAWarning) {
+  const std::string damaged = copyOfRecording("cut_image");
+  std::vector<fs::path> images;
+  for (const auto& entry : fs::directory_iterator(damaged + "/mav0/cam0/data")) images.push_back(entry.path());
+  std::sort(images.begin(), images.end());
+  const fs::path& victim = images[images.size() - 5];
+  fs::resize_file(victim, fs::file_size(victim) / 2);
+  const ProgramRun r = run(damaged, "cut_image");
+  EXPECT_EQ(r.exit_code, 0) << r.err;
+  EXPECT_THAT(r.err, HasSubstr(victim.filename().string()));
+  const auto statistics = nlohmann::json::parse(bytesOf(out("cut_image") + "/stats.json"));
+  EXPECT_EQ(statistics["frames"], kDuration_s * 20 - 1);
+  EXPECT_EQ(statistics["warnings"].size(), 1u);
+}
+
+TEST_F(LintelVioTest, AMissingRecordingIsOneLineAndLeavesNothing) {
+  const ProgramRun r = run(*work_ / "absent", "absent");
+  EXPECT_EQ(r.exit_code, 1);
+  expectOneLine(r, *work_ / "absent");
+  EXPECT_FALSE(fs::exists(out("absent")));
+}
+
+TEST_F(LintelVioTest, ABadConfigurationIsOneLineAndLeavesNothing) {
+  const std::string config = *work_ / "bad.yaml";
+  std::ofstream(config) << "estimator:\n  keyframs: 8\n";
+  const ProgramRun r = runVio({recording(), "-o", out("badconfig"), "-c", config});
+  EXPECT_EQ(r.exit_code, 1);
+  expectOneLine(r, config + ":2: unknown key estimator.keyframs");
+  expectOneLine(runVio({recording(), "-o", out("badconfig"), "--set", "map.coverage=wide"}), "must be a number");
+  expectOneLine(runVio({recording(), "-o", out("badconfig"), "-c", *work_ / "absent.yaml"}), "absent.yaml");
+  EXPECT_FALSE(fs::exists(out("badconfig")));
+}
+
+TEST_F(LintelVioTest, EarlierResultsAreOverwrittenOnlyWhenTold) {
+  fs::copy(out("reference"), out("again"));
+  const ProgramRun refused = run(recording(), "again", {"--to", "0.5"});
+  EXPECT_EQ(refused.exit_code, 1);
+  expectOneLine(refused, "-w");
+  expectSameAsReference("again");
+  ASSERT_EQ(run(recording(), "again", {"-w", "--to", "3"}).exit_code, 0);
+  EXPECT_LT(readTrajectory(out("again") + "/trajectory.tum").size(),
+            readTrajectory(out("reference") + "/trajectory.tum").size());
+}
+
+TEST_F(LintelVioTest, ARangeWithoutFramesIsOneLine) {
+  const ProgramRun r = run(recording(), "late", {"--from", "1000"});
+  EXPECT_EQ(r.exit_code, 1);
+  expectOneLine(r, "choose another range");
+}
+
+TEST_F(LintelVioTest, ARangeTooShortForAPoseSaysWhatWasWaitedFor) {
+  const ProgramRun r = run(recording(), "short", {"--to", "0.3"});
+  EXPECT_EQ(r.exit_code, 1);
+  expectOneLine(r, "no pose was found (collecting frames)");
+}
+
+TEST_F(LintelVioTest, WrongCommandLinesAreUsage) {
+  for (const std::vector<std::string>& arguments :
+       std::vector<std::vector<std::string>>{{},
+                                             {recording()},
+                                             {recording(), "-o", out("usage"), "--from", "2", "--to", "1"},
+                                             {recording(), "-o", out("usage"), "--from", "-2"},
+                                             {recording(), "-o", out("usage"), "--threads", "0"},
+                                             {recording(), "-o", out("usage"), "--export", "glb,unheardof"},
+                                             {recording(), "-o", out("usage"), "--unheard-of"}})
+    EXPECT_EQ(runVio(arguments).exit_code, 2) << testing::PrintToString(arguments);
+  EXPECT_FALSE(fs::exists(out("usage")));
+}
+
+TEST_F(LintelVioTest, HelpVersionAndConfigurationNeedNoInput) {
+  EXPECT_THAT(runVio({"--help"}).out, HasSubstr("--dump-config"));
+  EXPECT_EQ(runVio({"--version"}).exit_code, 0);
+  const ProgramRun dump = runVio({"--dump-config", "--set", "estimator.keyframes=8"});
+  EXPECT_EQ(dump.exit_code, 0);
+  EXPECT_THAT(dump.out, HasSubstr("  keyframes: 8\n"));
+}
+
+}  // namespace
+}  // namespace lintel

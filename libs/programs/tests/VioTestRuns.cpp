@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "VioTestRuns.h"
+
+#include <unistd.h>
+
+#include <fstream>
+#include <iterator>
+#include <sstream>
+
+#include "lintel/programs/Euroc2Rawlog.h"
+#include "lintel/programs/LintelVio.h"
+
+namespace lintel::test {
+
+namespace {
+
+using Program = int (*)(int, const char* const*, std::ostream&, std::ostream&);
+
+ProgramRun runProgram(Program program, const char* name, const std::vector<std::string>& arguments) {
+  std::vector<const char*> argv{name};
+  for (const std::string& argument : arguments) argv.push_back(argument.c_str());
+  std::ostringstream out, err;
+  ProgramRun run;
+  run.exit_code = program(static_cast<int>(argv.size()), argv.data(), out, err);
+  run.out = out.str();
+  run.err = err.str();
+  return run;
+}
+
+}  // namespace
+
+ProgramRun runVio(const std::vector<std::string>& arguments) {
+  return runProgram(runLintelVio, "lintel-vio", arguments);
+}
+
+ProgramRun runConverter(const std::vector<std::string>& arguments) {
+  return runProgram(runEuroc2Rawlog, "euroc2rawlog", arguments);
+}
+
+std::string eurocConfig() { return LINTEL_SOURCE_DIR "/share/lintel/config/euroc.yaml"; }
+
+std::string bytesOf(const std::filesystem::path& path) {
+  std::ifstream file(path, std::ios::binary);
+  return {std::istreambuf_iterator<char>(file), {}};
+}
+
+WorkFolder::WorkFolder() {
+  std::string pattern = (std::filesystem::temp_directory_path() / "lintel_vio_XXXXXX").string();
+  path_ = mkdtemp(pattern.data());
+}
+
+WorkFolder::~WorkFolder() {
+  std::error_code ignored;
+  std::filesystem::remove_all(path_, ignored);
+}
+
+}  // namespace lintel::test
