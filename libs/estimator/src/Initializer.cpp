@@ -58,9 +58,10 @@ ImuStatistics imuStatistics(const SlidingWindow& window) {
 
 double medianDisparityPx(const SlidingWindow& window, std::size_t frame_a, std::size_t frame_b, bool rotation_free) {
   const FrameId a = window.frames[frame_a].id, b = window.frames[frame_b].id;
-  Eigen::Quaterniond R_a_b = Eigen::Quaterniond::Identity();
-  for (std::size_t k = frame_a + 1; rotation_free && k <= frame_b; ++k) R_a_b = R_a_b * window.frames[k].imu->deltaR();
-  const Eigen::Quaterniond R_c_b = window.T_b_c().q.conjugate(), R_ca_cb = R_c_b * R_a_b * R_c_b.conjugate();
+  Eigen::Quaterniond R_b0_b1 = Eigen::Quaterniond::Identity();  // 0 is frame_a, 1 is frame_b
+  for (std::size_t k = frame_a + 1; rotation_free && k <= frame_b; ++k)
+    R_b0_b1 = R_b0_b1 * window.frames[k].imu->deltaR();
+  const Eigen::Quaterniond R_b_c = window.T_b_c().q, R_c0_c1 = R_b_c.conjugate() * R_b0_b1 * R_b_c;
   std::vector<double> disparities;
   for (const auto& [id, track] : window.points) {
     const PointSighting *in_a = nullptr, *in_b = nullptr;
@@ -69,7 +70,7 @@ double medianDisparityPx(const SlidingWindow& window, std::size_t frame_a, std::
       if (s.frame == b) in_b = &s;
     }
     if (!in_a || !in_b) continue;
-    const Eigen::Vector3d turned = R_ca_cb * in_b->observation.position.homogeneous();
+    const Eigen::Vector3d turned = R_c0_c1 * in_b->observation.position.homogeneous();
     if (turned.z() < 0.1) continue;
     disparities.push_back((turned.head<2>() / turned.z() - in_a->observation.position).norm());
   }

@@ -10,7 +10,7 @@ std::shared_ptr<const StateManifold> manifoldOf(BlockKey::Kind kind) {
   static const std::shared_ptr<const StateManifold> line = std::make_shared<LineManifold>();
   static const std::shared_ptr<const StateManifold> motion = std::make_shared<VectorManifold>(kMotionSize);
   static const std::shared_ptr<const StateManifold> correction = std::make_shared<VectorManifold>(kCorrectionSize);
-  static const std::shared_ptr<const StateManifold> point = std::make_shared<VectorManifold>(kPointSize);
+  static const std::shared_ptr<const StateManifold> point = std::make_shared<PointManifold>();
   switch (kind) {
     case BlockKey::kPose:
     case BlockKey::kExtrinsics: return pose;

@@ -98,8 +98,6 @@ SolveSummary solveWindow(SlidingWindow& window, const std::vector<Factor>& facto
   ceres::Solve(options, &builder.problem(), &summary);
   builder.copyBack();
   for (WindowFrame& frame : window.frames) frame.pose.tail<4>().normalize();
-  for (auto& [id, track] : window.points)
-    if (track.triangulated) track.point.normalize();
   return {static_cast<int>(summary.iterations.size()), summary.initial_cost, summary.final_cost,
           summary.IsSolutionUsable()};
 }

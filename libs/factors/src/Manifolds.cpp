@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "lintel/factors/Manifolds.h"
 
+#include <stdexcept>
+
 #include "lintel/factors/StateBlocks.h"
 #include "lintel/geometry/Rotation.h"
 
@@ -71,6 +73,10 @@ RowMajorMatrix PoseManifold::differenceJacobian(const double* y, const double* x
   J.topLeftCorner<3, 3>().setIdentity();
   J.bottomRightCorner<3, 4>() = rotationDifferenceJacobian(y + 3, x + 3);
   return J;
+}
+
+RowMajorMatrix PointManifold::differenceJacobian(const double*, const double*) const {
+  throw std::logic_error("PointManifold: a point cannot be part of a prior");
 }
 
 bool LineManifold::Plus(const double* x, const double* delta, double* y) const {

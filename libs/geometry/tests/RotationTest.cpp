@@ -70,9 +70,14 @@ TEST(Rotation, BetweenDirections) {
   EXPECT_TRUE((rotationBetween({1, 0, 0}, {-1, 0, 0}) * Vector3d::UnitX()).isApprox(-Vector3d::UnitX(), 1e-15));
 }
 
-TEST(Rotation, YawIgnoresPitchAndRoll) {
-  const Quaterniond q = expRotation({0, 0, 0.5}) * expRotation({0, 0.3, 0}) * expRotation({-0.2, 0, 0});
-  EXPECT_NEAR(yawOf(q), 0.5, 1e-15);
+TEST(Rotation, YawIsWhatATurnAboutTheVerticalAdds) {
+  // also for a body whose x axis points up, as that of EuRoC's sensor, where the heading of x means nothing
+  for (const Vector3d& tilt : {Vector3d(0, 0, 0), Vector3d(0.2, -0.3, 0), Vector3d(0, -1.55, 0)}) {
+    const Quaterniond before = expRotation(tilt), after = expRotation({0, 0, 0.5}) * before;
+    EXPECT_NEAR(yawOf(after) - yawOf(before), 0.5, 1e-12);
+  }
+  EXPECT_NEAR(yawOf(expRotation({0, 0, 0.5})), 0.5, 1e-15);
+  EXPECT_NEAR(yawOf(expRotation({0.3, -0.2, 0})), 0, 1e-15);
 }
 
 TEST(Rotation, TangentBasisIsOrthonormal) {

@@ -56,6 +56,7 @@ class LintelVio {
     const auto start = std::chrono::steady_clock::now();
     const OdometryResult result = process(*recording, configuration);
     const double wall_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+    if (result.statistics.frames == 0 && !result.error.empty()) throw RecordingError(result.error);
     const std::vector<std::string> warnings = recording->warnings();
     for (const std::string& warning : warnings) err_ << kName << ": warning: " << warning << "\n";
     writeOutput(result, configuration, wall_s, warnings);

@@ -16,14 +16,12 @@ namespace lintel {
 //   motion     9        v_w_b [m/s], bias_gyro [rad/s], bias_accel [m/s^2]
 //   line       5 -> 4   orthonormal line (PluckerLine.h): U as quaternion x y z w, phi; U <- U Exp(dpsi), phi += dphi.
 //                       World axes; the moment is about a constant point near the line (LineFactor.h)
-//   point      4        homogeneous point (X, w): X / w [m] in world axes from a constant origin. Its scale means
-//                       nothing; no manifold removes it, as residuals do not depend on it, damping keeps it and
-//                       points of the same size as lines' tangents are what Ceres' Schur complement is fast at
+//   point      4 -> 3   homogeneous point (X, w) of unit length: X / w [m] in world axes from a constant origin
 //   correction 7        what the calibrated camera is wrong by: fx fy cx cy [px], k1 k2, time offset [s]
 constexpr int kPoseSize = 7, kPoseTangent = 6;
 constexpr int kMotionSize = 9, kVelocityAt = 0, kBiasGyroAt = 3, kBiasAccelAt = 6;
 constexpr int kLineSize = 5, kLineTangent = 4;
-constexpr int kPointSize = 4;
+constexpr int kPointSize = 4, kPointTangent = 3;
 constexpr int kCorrectionSize = 7, kTimeOffsetAt = 6;
 
 using PoseBlock = Eigen::Matrix<double, kPoseSize, 1>;
