@@ -4,8 +4,8 @@
 #include <string_view>
 
 #include "AssimpScene.h"
-#include "Base64.h"
 #include "Writers.h"
+#include "lintel/reporting/Base64.h"
 
 // glTF 2 by assimp, then what assimp cannot say: which data belongs to each line (extras), unlit strokes.
 namespace lintel {

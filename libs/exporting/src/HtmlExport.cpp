@@ -5,9 +5,9 @@
 #include <iterator>
 #include <nlohmann/json.hpp>
 
-#include "Base64.h"
 #include "ViewerPage.h"
 #include "Writers.h"
+#include "lintel/reporting/Base64.h"
 
 // One page that needs no network: page/viewer.html with three.js and the map put into it.
 namespace lintel {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "Base64.h"
+#include "lintel/reporting/Base64.h"
 
 #include <cstdint>
 
