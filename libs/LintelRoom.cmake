@@ -9,7 +9,8 @@ endfunction()
 #
 # One room: the static library lintel_NAME (alias lintel::NAME) with its public headers in include/lintel/NAME.
 # ROOMS are rooms above it in LINTEL_ROOMS; anything else is refused. PRIVATE are third parties.
-# TESTS become the executable NAME_tests, every case known to ctest.
+# TESTS become the executable NAME_tests, every case known to ctest. Library and headers are installed, and
+# find_package(lintel) makes it lintel::NAME elsewhere, unless LINTEL_ROOMS_NOT_INSTALLED names the room.
 function(lintel_room NAME)
   cmake_parse_arguments(ARG "" "" "SOURCES;ROOMS;PRIVATE;TESTS;TEST_LINKS" ${ARGN})
   if(ARG_UNPARSED_ARGUMENTS)
@@ -30,6 +31,12 @@ function(lintel_room NAME)
     $<BUILD_INTERFACE:${CMAKE_CURRENT_SOURCE_DIR}/include> $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}>)
   list(TRANSFORM ARG_ROOMS PREPEND lintel::)
   target_link_libraries(lintel_${NAME} PUBLIC Eigen3::Eigen ${ARG_ROOMS} PRIVATE ${ARG_PRIVATE})
+
+  if(NOT NAME IN_LIST LINTEL_ROOMS_NOT_INSTALLED)
+    set_target_properties(lintel_${NAME} PROPERTIES EXPORT_NAME ${NAME})
+    install(TARGETS lintel_${NAME} EXPORT lintel COMPONENT development DESTINATION ${CMAKE_INSTALL_LIBDIR})
+    install(DIRECTORY include/lintel TYPE INCLUDE COMPONENT development)
+  endif()
 
   if(BUILD_TESTING AND ARG_TESTS)
     add_executable(${NAME}_tests ${ARG_TESTS})

@@ -22,6 +22,7 @@ function(lintel_missing NAME DEBIAN_PACKAGE)
 endfunction()
 
 # lintel_require(NAME DEBIAN_PACKAGE [argument…]): find_package(NAME argument…); where that fails, says what to install.
+# LINTEL_REQUIRED collects the calls, for the installed package configuration.
 # A macro, as find_package sets variables for its caller.
 macro(lintel_require NAME DEBIAN_PACKAGE)
   lintel_check_listed(${DEBIAN_PACKAGE})
@@ -29,6 +30,8 @@ macro(lintel_require NAME DEBIAN_PACKAGE)
   if(NOT ${NAME}_FOUND)
     lintel_missing(${NAME} ${DEBIAN_PACKAGE})
   endif()
+  string(JOIN " " lintel_call ${NAME} ${ARGN})
+  list(APPEND LINTEL_REQUIRED "${lintel_call}")
 endmacro()
 
 # lintel_require_library(NAME DEBIAN_PACKAGE HEADER LIBRARY): the same for a library without a CMake configuration; sets

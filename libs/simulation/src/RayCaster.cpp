@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "RayCaster.h"
 
-#include <embree3/rtcore.h>
-
 #include <limits>
 #include <stdexcept>
+
+#include "EmbreeApi.h"
 
 namespace lintel {
 
@@ -63,9 +63,6 @@ RayCaster::RayCaster(const Scene& scene) : embree_(std::make_unique<Embree>()) {
 RayCaster::~RayCaster() = default;
 
 void RayCaster::cast(const Eigen::Vector3f& origin, const Packet& directions, std::array<RayHit, kPacket>& hits) const {
-  RTCIntersectContext context;
-  rtcInitIntersectContext(&context);
-  context.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
   alignas(32) const int valid[kPacket] = {-1, -1, -1, -1, -1, -1, -1, -1};
   RTCRayHit8 query;
   for (int i = 0; i < kPacket; ++i) {
@@ -82,7 +79,7 @@ void RayCaster::cast(const Eigen::Vector3f& origin, const Packet& directions, st
     query.ray.flags[i] = 0;
     query.hit.geomID[i] = query.hit.instID[0][i] = RTC_INVALID_GEOMETRY_ID;
   }
-  rtcIntersect8(valid, embree_->scene, &context, &query);
+  intersectPacket(valid, embree_->scene, query);
   for (int i = 0; i < kPacket; ++i) {
     if (query.hit.geomID[i] == RTC_INVALID_GEOMETRY_ID) {
       hits[i] = {};
@@ -93,8 +90,6 @@ void RayCaster::cast(const Eigen::Vector3f& origin, const Packet& directions, st
 }
 
 bool RayCaster::occluded(const Eigen::Vector3d& from, const Eigen::Vector3d& to, double tolerance_m) const {
-  RTCIntersectContext context;
-  rtcInitIntersectContext(&context);
   const Eigen::Vector3d way = to - from;
   const double length = way.norm();
   if (length <= 2 * tolerance_m) return false;
@@ -108,7 +103,7 @@ bool RayCaster::occluded(const Eigen::Vector3d& from, const Eigen::Vector3d& to,
   ray.tnear = static_cast<float>(tolerance_m);
   ray.tfar = static_cast<float>(length - tolerance_m);
   ray.mask = ~0u;
-  rtcOccluded1(embree_->scene, &context, &ray);
+  testOcclusion(embree_->scene, ray);
   return ray.tfar < 0;
 }
 
