@@ -16,8 +16,18 @@ std::vector<Sighting> allSightings(const std::vector<Sighting>& former, const st
   return all;
 }
 
+/// What the window could not place may still become known from all keyframes together.
+template <class Retired, class Track>
+void retireUnplaced(const Track& track, std::vector<Retired>& retired) {
+  Retired r;
+  r.id = track.id;
+  r.triangulated = false;
+  r.sightings = allSightings(track.former, track.sightings);
+  if (r.sightings.size() >= 2) retired.push_back(std::move(r));
+}
+
 void retirePoint(const SlidingWindow& window, const PointTrack& track, WindowUpdate& update) {
-  if (!track.triangulated || track.sightings.empty() || track.point[3] <= 0) return;
+  if (!track.triangulated || track.sightings.empty() || track.point[3] <= 0) return retireUnplaced(track, update.points);
   const Eigen::Vector3d p_w = window.positionOf(track);
   const double distance = (p_w - window.T_w_c(window.frame(track.sightings.front().frame)).p).norm();
   update.points.push_back({track.id, p_w, track.sigma_inverse_depth * distance * distance,
@@ -25,7 +35,7 @@ void retirePoint(const SlidingWindow& window, const PointTrack& track, WindowUpd
 }
 
 void retireLine(const LineTrack& track, WindowUpdate& update) {
-  if (!track.triangulated) return;
+  if (!track.triangulated) return retireUnplaced(track, update.lines);
   update.lines.push_back({track.id, lineInWorld(track), track.sigma_direction_rad, track.sigma_distance_m,
                           track.degenerate, allSightings(track.former, track.sightings)});
 }
@@ -76,7 +86,8 @@ void retireTracks(SlidingWindow& window, FrameId leaving, bool keyframe, WindowU
 
 void retireKeyframe(const WindowFrame& frame, WindowUpdate& update) {
   update.keyframes.push_back(
-      {frame.id, frame.t_ns, frame.T_w_b(), velocityOf(frame.motion.data()), biasOf(frame.motion.data()), frame.imu});
+      {frame.id, frame.t_ns, frame.T_w_b(), velocityOf(frame.motion.data()), biasOf(frame.motion.data()), frame.imu,
+       frame.at_rest});
 }
 
 void retireAll(SlidingWindow& window, WindowUpdate& update) {

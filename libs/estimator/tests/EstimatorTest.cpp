@@ -135,12 +135,13 @@ TEST(Estimator, RetiredLandmarksAreWhereTheyAre) {
   int points = 0, lines = 0;
   for (const WindowUpdate& u : updates) {
     for (const RetiredPoint& p : u.points) {
+      if (!p.triangulated) continue;
       const Eigen::Vector3d error = T * p.p_w - flight.sim.points_w[flight.sim.point_of_track[p.id]];
       EXPECT_LT(error.norm(), 0.05 + 3 * p.sigma_distance_m) << "point " << p.id;
       ++points;
     }
     for (const RetiredLine& l : u.lines) {
-      if (l.degenerate) continue;
+      if (!l.triangulated || l.degenerate) continue;
       const Segment3& segment = flight.sim.lines_w[flight.sim.line_of_track[l.id]];
       EXPECT_LT(lineAngle(T.T_a_b.q * l.line_w.d, segment.direction()), 0.02 + 3 * l.sigma_direction_rad);
       const Eigen::Vector3d foot = T * l.line_w.nearestPoint(), d = T.T_a_b.q * l.line_w.d.normalized();

@@ -73,17 +73,24 @@ TEST_F(WindowRetirementTest, SightingsOfAFrameThatWasNoKeyframeAreNot) {
   EXPECT_THAT(framesOf(update_.points[0].sightings), ElementsAre(0));
 }
 
-TEST_F(WindowRetirementTest, TracksWithoutAnEstimateGoSilently) {
+TEST_F(WindowRetirementTest, TracksWithoutAnEstimateSaySo) {
   window_.points.at(3).triangulated = false;
   window_.lines.at(3).triangulated = false;
+  see(4, 1);  // a single sighting can never become known
   retireTracks(window_, 0, true, update_);
-  EXPECT_TRUE(update_.points.empty());
-  EXPECT_TRUE(update_.lines.empty());
+  ASSERT_THAT(ids(update_.points), ElementsAre(3));
+  ASSERT_THAT(ids(update_.lines), ElementsAre(3));
+  EXPECT_FALSE(update_.points[0].triangulated);
+  EXPECT_FALSE(update_.lines[0].triangulated);
+  EXPECT_THAT(framesOf(update_.points[0].sightings), ElementsAre(0, 1));
+  EXPECT_EQ(update_.lines[0].sightings.size(), 2u);
   EXPECT_EQ(window_.points.count(3), 0u);
+  EXPECT_EQ(window_.points.count(4), 0u);
 }
 
 TEST_F(WindowRetirementTest, KeyframesCarryTheirState) {
   window_.frames[1].motion << 1, 2, 3, 0.1, 0.2, 0.3, 0.4, 0.5, 0.6;
+  window_.frames[1].at_rest = true;
   retireKeyframe(window_.frames[1], update_);
   ASSERT_EQ(update_.keyframes.size(), 1u);
   const RetiredKeyframe& keyframe = update_.keyframes[0];
@@ -93,6 +100,7 @@ TEST_F(WindowRetirementTest, KeyframesCarryTheirState) {
   EXPECT_EQ(keyframe.v_w_b, Eigen::Vector3d(1, 2, 3));
   EXPECT_EQ(keyframe.bias.gyro, Eigen::Vector3d(0.1, 0.2, 0.3));
   EXPECT_EQ(keyframe.bias.accel, Eigen::Vector3d(0.4, 0.5, 0.6));
+  EXPECT_TRUE(keyframe.at_rest);
 }
 
 TEST_F(WindowRetirementTest, RetireAllHandsOverEverythingOnceAndEmpties) {

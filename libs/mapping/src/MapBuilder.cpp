@@ -12,8 +12,10 @@ namespace lintel {
 void MapBuilder::add(const WindowUpdate& update) {
   if (update.hasPose()) trajectory_.emplace_back(update.t_ns, update.T_w_b);
   for (const RetiredKeyframe& keyframe : update.keyframes) keyframes_[keyframe.id] = keyframe;
-  points_.insert(points_.end(), update.points.begin(), update.points.end());
-  lines_.insert(lines_.end(), update.lines.begin(), update.lines.end());
+  for (const RetiredPoint& point : update.points)
+    if (point.triangulated) points_.push_back(point);
+  for (const RetiredLine& line : update.lines)
+    if (line.triangulated) lines_.push_back(line);
 }
 
 namespace {

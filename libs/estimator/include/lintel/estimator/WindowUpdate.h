@@ -19,6 +19,7 @@ struct RetiredKeyframe {
   Eigen::Vector3d v_w_b = Eigen::Vector3d::Zero();
   ImuBias bias;
   std::shared_ptr<const Preintegration> imu;  ///< from the keyframe before; null for the first of a run
+  bool at_rest = false;
 };
 
 /// A point that is not tracked any more.
@@ -27,6 +28,7 @@ struct RetiredPoint {
   Eigen::Vector3d p_w = Eigen::Vector3d::Zero();
   double sigma_distance_m = 0;
   std::vector<PointSighting> sightings;  ///< in keyframes
+  bool triangulated = true;              ///< false: position and sigma say nothing, the window could not place it
 };
 
 /// A line that is not tracked any more.
@@ -36,6 +38,7 @@ struct RetiredLine {
   double sigma_direction_rad = 0, sigma_distance_m = 0;
   bool degenerate = false;
   std::vector<LineSighting> sightings;  ///< in keyframes
+  bool triangulated = true;             ///< false: line and sigmas say nothing, the window could not place it
 };
 
 enum class EstimatorStatus {
