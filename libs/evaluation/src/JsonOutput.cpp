@@ -15,7 +15,11 @@ Json jsonOf(const ErrorStatistics& statistics) {
           {"rmse", statistics.rmse},
           {"mean", statistics.mean},
           {"median", statistics.median},
-          {"max", statistics.max}};
+          {"max", statistics.max},
+          {"p05", statistics.p05},
+          {"p25", statistics.p25},
+          {"p75", statistics.p75},
+          {"p95", statistics.p95}};
 }
 
 Json jsonOf(const Similarity& s) {
@@ -43,6 +47,8 @@ Json jsonOf(const TrajectoryErrors& e) {
           {"path_m", e.path_m},
           {"coverage_time", e.coverage_time},
           {"coverage_path", e.coverage_path},
+          {"complete", e.complete},
+          {"whole_rmse_m", e.whole_rmse_m},
           {"alignment", nameOf(e.alignment)},
           {"transform", jsonOf(e.S_truth_estimate)},
           {"position_m", jsonOf(e.position_m)},
@@ -65,6 +71,7 @@ Json jsonOf(const LineErrors& e) {
           {"length_m", e.length_m},
           {"observable_m", e.observable_m},
           {"tolerances_m", e.tolerances_m},
+          {"surface_precision", e.surface_precision},
           {"precision", e.precision},
           {"recall", e.recall},
           {"duplicates", e.duplicates},

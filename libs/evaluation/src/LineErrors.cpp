@@ -124,6 +124,17 @@ void addPrecision(LineErrors& result, const std::vector<AlignedLine>& lines, con
   result.duplicates = cover.duplicates();
 }
 
+void addSurfacePrecision(LineErrors& result, const std::vector<AlignedLine>& lines, const LineErrorParams& params,
+                         const SurfaceDistanceFunction& surface_distance) {
+  Shares precision(params.tolerances_m);
+  for (const AlignedLine& line : lines) {
+    const auto pieces = piecesOf(line.segment, params.step_m);
+    const double piece_m = line.segment.length() / static_cast<double>(pieces.size());
+    for (const Eigen::Vector3d& p : pieces) precision.add(piece_m, surface_distance(p));
+  }
+  result.surface_precision = precision.result();
+}
+
 void addRecall(LineErrors& result, const std::vector<AlignedLine>& lines, const std::vector<TrueLine>& truth,
                const LineErrorParams& params) {
   Shares recall(params.tolerances_m);
@@ -149,7 +160,8 @@ void addRecall(LineErrors& result, const std::vector<AlignedLine>& lines, const 
 }  // namespace
 
 LineErrors evaluateLines(const std::vector<MapLine>& lines, const Similarity& S_truth_map,
-                         const std::vector<TrueLine>& truth, const LineErrorParams& params) {
+                         const std::vector<TrueLine>& truth, const LineErrorParams& params,
+                         const SurfaceDistanceFunction& surface_distance) {
   const std::vector<AlignedLine> aligned = alignedLines(lines, S_truth_map);
   LineErrors result;
   result.tolerances_m = params.tolerances_m;
@@ -160,6 +172,7 @@ LineErrors evaluateLines(const std::vector<MapLine>& lines, const Similarity& S_
   }
   addPrecision(result, aligned, truth, params);
   addRecall(result, aligned, truth, params);
+  if (surface_distance) addSurfacePrecision(result, aligned, params, surface_distance);
   return result;
 }
 

@@ -59,7 +59,11 @@ void printText(const TrajectoryErrors& e, std::ostream& out) {
       << "coverage        " << fixed(100 * e.coverage_time, 1) << " % of " << fixed(e.duration_s, 1) << " s, "
       << fixed(100 * e.coverage_path, 1) << " % of " << fixed(e.path_m, 1) << " m\n"
       << "alignment       " << nameOf(e.alignment) << "\n";
+  if (!e.complete)
+    out << "INCOMPLETE      the errors below are of a part of the recording: do not compare them with those of a whole run\n";
   printStatistics("position (ATE)", e.position_m, 1, "m", out);
+  out << "whole recording RMSE " << fixed(e.whole_rmse_m, 4)
+      << " m  (where there is no estimate, the one nearest in time stands in)\n";
   printStatistics("rotation", e.rotation_rad, kDegrees, "deg", out);
   out << "scale           " << fixed(e.scale, 5) << " (truth / estimate by Sim(3), ATE RMSE then "
       << fixed(e.position_sim3_m.rmse, 4) << " m)\n";
@@ -68,6 +72,10 @@ void printText(const TrajectoryErrors& e, std::ostream& out) {
 
 void printText(const LineErrors& e, std::ostream& out) {
   out << "lines           " << e.lines << " of " << fixed(e.length_m, 1) << " m, " << e.degenerate << " degenerate\n";
+  if (!e.surface_precision.empty()) {
+    printShares("on surfaces", e.tolerances_m, e.surface_precision, out);
+    out << "  of the map on true surfaces\n";
+  }
   printShares("precision", e.tolerances_m, e.precision, out);
   out << "  of the map on true edges\n";
   printShares("recall", e.tolerances_m, e.recall, out);

@@ -55,6 +55,38 @@ void addCoverage(TrajectoryErrors& result, const StampedPoses& groundtruth, cons
   if (result.path_m > 0) result.coverage_path = covered_m / result.path_m;
 }
 
+/// The alignment's error at every true pose: that of its pair, or where no pair is near in time, that of the estimate
+/// nearest in time held still. Weighted by the time that a true pose stands for.
+double wholeRmse(const Similarity& S_truth_estimate, const StampedPoses& estimate, const StampedPoses& groundtruth,
+                 const std::vector<PosePair>& pairs, double max_gap_s) {
+  double sum = 0, duration_s = 0;
+  std::size_t next = 0;  // the first pair at or after the true pose
+  for (std::size_t i = 0; i < groundtruth.size(); ++i) {
+    while (next < pairs.size() && pairs[next].groundtruth < i) ++next;
+    const PosePair* after = next < pairs.size() ? &pairs[next] : nullptr;
+    const PosePair* before = next > 0 ? &pairs[next - 1] : nullptr;
+    const auto timeTo = [&](const PosePair* pair) {
+      return std::abs(seconds(groundtruth[pair->groundtruth].first - groundtruth[i].first));
+    };
+    const PosePair* nearest = !after || (before && timeTo(before) <= timeTo(after)) ? before : after;
+    const bool covered = before && after && timeTo(before) + timeTo(after) <= max_gap_s;
+    const std::size_t truth = covered || nearest->groundtruth == i ? nearest->groundtruth : i;
+    const double error_m = (S_truth_estimate * estimate[nearest->estimate].second.p - groundtruth[truth].second.p).norm();
+    const std::size_t from = i > 0 ? i - 1 : i, to = std::min(i + 1, groundtruth.size() - 1);
+    const double weight_s = 0.5 * seconds(groundtruth[to].first - groundtruth[from].first);
+    sum += weight_s * error_m * error_m;
+    duration_s += weight_s;
+  }
+  return duration_s > 0 ? std::sqrt(sum / duration_s) : 0;
+}
+
+StampedPoses between(const StampedPoses& poses, std::int64_t from_ns, std::int64_t to_ns) {
+  StampedPoses part;
+  for (const auto& pose : poses)
+    if (pose.first >= from_ns && pose.first <= to_ns) part.push_back(pose);
+  return part;
+}
+
 /// Fills in what needs orientations: rotation errors after alignment, and relative errors.
 void addPoseErrors(TrajectoryErrors& result, const StampedPoses& estimate, const StampedPoses& groundtruth,
                    const std::vector<PosePair>& pairs, const TrajectoryErrorParams& params) {
@@ -93,8 +125,9 @@ std::vector<PosePair> associate(const StampedPoses& estimate, const StampedPoses
   return pairs;
 }
 
-TrajectoryErrors evaluateTrajectory(const StampedPoses& estimate, const StampedPoses& groundtruth,
+TrajectoryErrors evaluateTrajectory(const StampedPoses& estimate, const StampedPoses& whole_groundtruth,
                                     const TrajectoryErrorParams& params) {
+  const StampedPoses groundtruth = between(whole_groundtruth, params.from_ns, params.to_ns);
   const std::vector<PosePair> pairs = associate(estimate, groundtruth, params.max_difference_s);
   if (pairs.size() < 3)
     throw EvaluationError("only " + std::to_string(pairs.size()) + " of " + std::to_string(estimate.size()) +
@@ -116,6 +149,8 @@ TrajectoryErrors evaluateTrajectory(const StampedPoses& estimate, const StampedP
   result.scale = sim3.scale;
   result.position_sim3_m = statisticsOf(distancesAfter(sim3, positions));
   addCoverage(result, groundtruth, pairs, params.max_gap_s);
+  result.complete = result.coverage_time >= params.complete_share;
+  result.whole_rmse_m = wholeRmse(result.S_truth_estimate, estimate, groundtruth, pairs, params.max_gap_s);
   addPoseErrors(result, estimate, groundtruth, pairs, params);
   return result;
 }

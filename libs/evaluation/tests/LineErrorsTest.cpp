@@ -99,6 +99,18 @@ TEST(LineErrors, MovesTheMapFirst) {
   EXPECT_DOUBLE_EQ(e.length_m, 2);
 }
 
+TEST(LineErrors, SurfacesByHand) {
+  // The floor is true. One metre lies on it, one metre climbs from it by 4 cm: half of that within 2 cm.
+  const auto floor = [](const Vector3d& p) { return std::abs(p.z()); };
+  const double along = std::sqrt(1 - 0.04 * 0.04);
+  const std::vector<MapLine> map{mapLine({0, 5, 0}, {1, 5, 0}), mapLine({0, 6, 0}, {along, 6, 0.04})};
+  const LineErrors e = evaluateLines(map, {}, kEdges, {}, floor);
+  ASSERT_EQ(e.surface_precision.size(), 3u);
+  EXPECT_NEAR(e.surface_precision[0], 0.75, 1e-9);
+  EXPECT_NEAR(e.surface_precision[1], 1, 1e-9);
+  EXPECT_TRUE(evaluateLines(map, {}, kEdges).surface_precision.empty());
+}
+
 TEST(LineErrors, OfAnEmptyMap) {
   const LineErrors e = evaluateLines({}, {}, kEdges);
   EXPECT_TRUE(std::isnan(e.precision[0]));

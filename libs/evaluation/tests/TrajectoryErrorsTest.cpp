@@ -51,6 +51,8 @@ TEST(Statistics, OfFourByHand) {
   EXPECT_DOUBLE_EQ(s.median, 2.5);
   EXPECT_DOUBLE_EQ(s.max, 4);
   EXPECT_DOUBLE_EQ(statisticsOf({7, 1, 3}).median, 3);
+  EXPECT_DOUBLE_EQ(s.p25, 2);
+  EXPECT_DOUBLE_EQ(s.p95, 4);
 }
 
 TEST(Statistics, OfNothingIsNotANumber) {
@@ -162,6 +164,42 @@ TEST(TrajectoryErrors, CoverageLeavesGapsOut) {
   EXPECT_DOUBLE_EQ(errors.duration_s, 40);
   EXPECT_DOUBLE_EQ(errors.coverage_time, 15.0 / 40);  // 5 … 10 and 20 … 30 s
   EXPECT_DOUBLE_EQ(errors.coverage_path, 15.0 / 40);
+}
+
+TEST(TrajectoryErrors, HalfARunCannotLookBetterThanAWholeOne) {
+  const StampedPoses truth = square();
+  StampedPoses whole = truth;  // 10 cm off at every second pose
+  for (std::size_t i = 0; i < whole.size(); i += 2) whole[i].second.p.z() += 0.1;
+  const StampedPoses half(truth.begin(), truth.begin() + 8);  // perfect as far as it goes
+  TrajectoryErrorParams params;
+  params.max_gap_s = 1.5;
+  const TrajectoryErrors of_whole = evaluateTrajectory(whole, truth, params), of_half = evaluateTrajectory(half, truth, params);
+  EXPECT_TRUE(of_whole.complete);
+  EXPECT_FALSE(of_half.complete);
+  EXPECT_LT(of_half.position_m.rmse, of_whole.position_m.rmse);  // what must not be compared
+  EXPECT_LT(of_whole.whole_rmse_m, of_half.whole_rmse_m);
+  EXPECT_NEAR(of_whole.whole_rmse_m, of_whole.position_m.rmse, 0.005);
+}
+
+TEST(TrajectoryErrors, TheWholeRecordingByHand) {
+  // Truth 0 1 2 3 4 m; the estimate is right at 0 1 2 and then gone: 3 and 4 m are taken for 2 m.
+  const StampedPoses truth = straight(5), estimate(truth.begin(), truth.begin() + 3);
+  TrajectoryErrorParams params;
+  params.alignment = AlignmentKind::kNone;
+  EXPECT_NEAR(evaluateTrajectory(estimate, truth, params).whole_rmse_m, std::sqrt((1 * 1.0 + 0.5 * 4.0) / 4), 1e-12);
+}
+
+TEST(TrajectoryErrors, OnlyTheAskedPartOfTheTruthCounts) {
+  TrajectoryErrorParams params;
+  params.from_ns = 4 * kSecond;
+  params.to_ns = 12 * kSecond;
+  const StampedPoses truth = square();
+  const TrajectoryErrors errors = evaluateTrajectory({truth.begin() + 4, truth.begin() + 13}, truth, params);
+  EXPECT_EQ(errors.pairs, 9u);
+  EXPECT_DOUBLE_EQ(errors.duration_s, 8);
+  EXPECT_DOUBLE_EQ(errors.start_offset_s, 0);
+  EXPECT_DOUBLE_EQ(errors.coverage_time, 1);
+  EXPECT_TRUE(errors.complete);
 }
 
 TEST(TrajectoryErrors, RefusesTrajectoriesThatDoNotMeet) {

@@ -5,16 +5,20 @@
 #include <CLI/Config.hpp>
 #include <CLI/Formatter.hpp>
 #include <filesystem>
+#include <memory>
 #include <optional>
 #include <ostream>
 #include <string>
 
+#include "EvalReport.h"
 #include "ProgramMain.h"
 #include "lintel/evaluation/LineErrors.h"
 #include "lintel/evaluation/Output.h"
 #include "lintel/evaluation/TrajectoryErrors.h"
 #include "lintel/mapping/AtomicFile.h"
 #include "lintel/mapping/MapFile.h"
+#include "lintel/sensing/GroundTruth.h"
+#include "lintel/simulation/SurfaceDistance.h"
 
 namespace lintel {
 
@@ -30,6 +34,27 @@ StampedPoses trajectoryOf(const LineMap& map) {
   return poses;
 }
 
+namespace fs = std::filesystem;
+
+/// True poses: a TUM or CSV file, or a recording that carries them.
+StampedPoses readTruth(const std::string& path) {
+  const bool recording = fs::is_directory(path) || fs::path(path).extension() == ".rawlog";
+  if (!recording) return readTrajectory(path);
+  const StampedPoses poses = readGroundTruth(path);
+  if (poses.empty()) throw EvaluationError(path + ": carries no ground truth; give a file with --groundtruth");
+  return poses;
+}
+
+/// A time in seconds, exact to the nanosecond; empty if it is none.
+std::optional<std::int64_t> nanosecondsOf(const std::string& text) {
+  const std::size_t dot = std::min(text.find('.'), text.size());
+  std::string digits = text.substr(0, dot), decimals = dot < text.size() ? text.substr(dot + 1) : "";
+  decimals.resize(9, '0');
+  digits += decimals;
+  if (dot == 0 || dot > 10 || digits.find_first_not_of("0123456789") != std::string::npos) return std::nullopt;
+  return std::stoll(digits);
+}
+
 class LintelEval {
  public:
   LintelEval(std::ostream& out, std::ostream& err) : out_(out), err_(err) { addOptions(); }
@@ -40,7 +65,9 @@ class LintelEval {
     params_.alignment = alignmentKindOf(alignment_);
     if (!trajectory_.empty()) evaluateTrajectoryFile();
     if (!map_.empty()) evaluateMap();
-    if (!json_.empty()) writeJson();
+    if (!json_.empty())
+      AtomicFile::writeWhole(json_, toJson(evaluation_.trajectory, evaluation_.map_trajectory, evaluation_.lines));
+    if (!report_.empty()) AtomicFile::writeWhole(report_, evaluationPage(evaluation_));
     return 0;
   }
 
@@ -48,7 +75,8 @@ class LintelEval {
   void addOptions() {
     app_.add_option("--trajectory", trajectory_, "Estimated trajectory, TUM or EuRoC state CSV")->type_name("EST");
     app_.add_option("--groundtruth", groundtruth_,
-                    "True trajectory, TUM or EuRoC state CSV; for a map the default is the one beside the lines "
+                    "True trajectory: TUM, EuRoC state CSV, or a recording that carries it (EuRoC folder, rawlog); for a "
+                    "map the default is the one beside the lines "
                     "(../state_groundtruth_estimate0/data.csv)")
         ->type_name("GT");
     app_.add_option("--map", map_, "Line map of lintel-vio")->type_name("MAP.lintel");
@@ -64,74 +92,93 @@ class LintelEval {
         ->check(CLI::PositiveNumber)
         ->delimiter(',')
         ->capture_default_str();
+    app_.add_option("--between", between_,
+                    "Only this part of the ground truth counts, two times [s] with a comma: for runs of a part")
+        ->type_name("T0,T1");
+    app_.add_option("--surfaces", surfaces_,
+                    "True surfaces, a PLY mesh; the default is the one beside the lines (../scene0/scene.ply)")
+        ->type_name("MESH.ply");
+    app_.add_option("--report", report_, "Write the figures with plots as one page")->type_name("FILE.html");
     app_.add_option("--json", json_, "Write the figures to this file")->type_name("FILE");
     app_.add_flag("--quiet", quiet_, "Print no figures");
   }
 
-  void checkUsage() const {
+  void checkUsage() {
     if (trajectory_.empty() && map_.empty())
       throw UsageError("nothing to do: give --trajectory EST --groundtruth GT, or --map MAP.lintel --lines GT.csv");
     if (!trajectory_.empty() && groundtruth_.empty()) throw UsageError("--trajectory needs --groundtruth GT");
     if (map_.empty() != lines_.empty()) throw UsageError("--map and --lines need each other");
+    if (!between_.empty()) readBetween();
   }
 
-  TrajectoryErrors errorsOf(const std::string& name, const StampedPoses& estimate, const std::string& truth) const {
-    const StampedPoses groundtruth = readTrajectory(truth);
+  void readBetween() {
+    const std::size_t comma = between_.find(',');
+    const auto from_ns = nanosecondsOf(between_.substr(0, comma));
+    const auto to_ns = comma == std::string::npos ? std::nullopt : nanosecondsOf(between_.substr(comma + 1));
+    if (!from_ns || !to_ns || *from_ns >= *to_ns)
+      throw UsageError("--between " + between_ + ": must be two times in seconds, as 1403636584.763555584,1403636600");
+    params_.from_ns = *from_ns;
+    params_.to_ns = *to_ns;
+  }
+
+  TrajectoryErrors errorsOf(const std::string& name, const StampedPoses& estimate, const std::string& truth) {
+    evaluation_.groundtruth_name = truth;
+    evaluation_.groundtruth = readTruth(truth);
     try {
-      return evaluateTrajectory(estimate, groundtruth, params_);
+      return evaluateTrajectory(estimate, evaluation_.groundtruth, params_);
     } catch (const EvaluationError& error) {
       throw EvaluationError(name + ": " + error.what());
     }
   }
 
   void evaluateTrajectoryFile() {
-    trajectory_errors_ = errorsOf(trajectory_, readTrajectory(trajectory_), groundtruth_);
-    if (!quiet_) printText(*trajectory_errors_, out_);
+    evaluation_.estimate_name = trajectory_;
+    evaluation_.estimate = readTrajectory(trajectory_);
+    evaluation_.trajectory = errorsOf(trajectory_, evaluation_.estimate, groundtruth_);
+    if (!quiet_) printText(*evaluation_.trajectory, out_);
   }
 
-  /// The ground truth that a map is aligned by; empty if there is none.
-  std::string groundtruthOfMap() const {
-    if (!groundtruth_.empty()) return groundtruth_;
-    const auto beside = std::filesystem::path(lines_).parent_path() / "../state_groundtruth_estimate0/data.csv";
-    return std::filesystem::exists(beside) ? beside.string() : std::string();
+  /// A file of the recording that the true lines belong to; empty if there is none.
+  std::string besideLines(const std::string& name) const {
+    const fs::path beside = fs::path(lines_).parent_path() / ".." / name;
+    return fs::exists(beside) ? beside.string() : std::string();
   }
 
   void evaluateMap() {
-    const LineMap map = readMap(map_);
-    const std::vector<TrueLine> truth = readTrueLines(lines_);
-    const std::string groundtruth = groundtruthOfMap();
-    Similarity S_truth_map;
-    if (params_.alignment != AlignmentKind::kNone && !groundtruth.empty()) {
-      map_trajectory_errors_ = errorsOf(map_, trajectoryOf(map), groundtruth);
-      S_truth_map = map_trajectory_errors_->S_truth_estimate;
+    evaluation_.map_name = map_;
+    evaluation_.map = readMap(map_);
+    evaluation_.true_lines = readTrueLines(lines_);
+    const std::string truth = groundtruth_.empty() ? besideLines("state_groundtruth_estimate0/data.csv") : groundtruth_;
+    if (params_.alignment != AlignmentKind::kNone && !truth.empty()) {
+      evaluation_.map_trajectory = errorsOf(map_, trajectoryOf(evaluation_.map), truth);
+      evaluation_.S_truth_map = evaluation_.map_trajectory->S_truth_estimate;
     }
-    line_errors_ = evaluateLines(map.lines, S_truth_map, truth);
+    SurfaceDistanceFunction surface_distance;
+    const std::string mesh = surfaces_.empty() ? besideLines("scene0/scene.ply") : surfaces_;
+    if (!mesh.empty())
+      surface_distance = [surface = std::make_shared<SurfaceDistance>(mesh)](const Eigen::Vector3d& p) { return (*surface)(p); };
+    evaluation_.lines =
+        evaluateLines(evaluation_.map.lines, evaluation_.S_truth_map, evaluation_.true_lines, {}, surface_distance);
     if (!quiet_) printMap();
   }
 
   void printMap() const {
-    if (map_trajectory_errors_)
-      out_ << "map alignment   " << alignment_ << " by " << map_trajectory_errors_->pairs
-           << " poses of the map, ATE RMSE " << map_trajectory_errors_->position_m.rmse << " m\n";
+    const auto& trajectory = evaluation_.map_trajectory;
+    if (trajectory)
+      out_ << "map alignment   " << alignment_ << " by " << trajectory->pairs << " poses of the map, ATE RMSE "
+           << trajectory->position_m.rmse << " m\n";
     else
       out_ << "map alignment   none\n";
-    printText(*line_errors_, out_);
-  }
-
-  void writeJson() const {
-    AtomicFile file(json_);
-    file.write(toJson(trajectory_errors_, map_trajectory_errors_, line_errors_));
-    file.commit();
+    printText(*evaluation_.lines, out_);
   }
 
   std::ostream& out_;
   std::ostream& err_;
   CLI::App app_{"Errors of a trajectory against its ground truth, and of a line map against the true lines.", kName};
-  std::string trajectory_, groundtruth_, map_, lines_, alignment_ = "se3", json_;
+  std::string trajectory_, groundtruth_, map_, lines_, alignment_ = "se3", json_, report_, surfaces_, between_;
   bool quiet_ = false;
   TrajectoryErrorParams params_;
-  std::optional<TrajectoryErrors> trajectory_errors_, map_trajectory_errors_;
-  std::optional<LineErrors> line_errors_;
+  Evaluation evaluation_;
 };
 
 }  // namespace

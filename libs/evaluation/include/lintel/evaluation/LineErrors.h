@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <functional>
 #include <limits>
 #include <vector>
 
@@ -37,6 +38,7 @@ struct LineErrors {
   double length_m = 0;      ///< of the map
   double observable_m = 0;  ///< length of the true edges that count for recall
   std::vector<double> tolerances_m;
+  std::vector<double> surface_precision;  ///< share of the map within tolerance of a true surface; empty if none is known
   std::vector<double> precision;  ///< share of the map within tolerance and angle of a true edge
   std::vector<double> recall;     ///< share of the observable edges within tolerance and angle of the map
   SegmentErrors all_matched, degenerate_matched, well_determined_matched;
@@ -44,9 +46,13 @@ struct LineErrors {
       std::numeric_limits<double>::quiet_NaN();  ///< matched length / length of the edges it covers; 1 = none
 };
 
+/// Distance of a point of the true world to its nearest surface [m].
+using SurfaceDistanceFunction = std::function<double(const Eigen::Vector3d&)>;
+
 /// Compares the lines of a map, moved by `S_truth_map`, with the true edges. A segment is matched to the edge that most
 /// of its pieces vote for, if that is at least half of them.
 LineErrors evaluateLines(const std::vector<MapLine>& lines, const Similarity& S_truth_map,
-                         const std::vector<TrueLine>& truth, const LineErrorParams& params = {});
+                         const std::vector<TrueLine>& truth, const LineErrorParams& params = {},
+                         const SurfaceDistanceFunction& surface_distance = {});
 
 }  // namespace lintel

@@ -14,6 +14,10 @@ struct ErrorStatistics {
   double mean = std::numeric_limits<double>::quiet_NaN();
   double median = std::numeric_limits<double>::quiet_NaN();  ///< of an even number: mean of the two in the middle
   double max = std::numeric_limits<double>::quiet_NaN();
+  double p05 = std::numeric_limits<double>::quiet_NaN();  ///< quantiles: the sorted value number floor(q n), from 0
+  double p25 = std::numeric_limits<double>::quiet_NaN();
+  double p75 = std::numeric_limits<double>::quiet_NaN();
+  double p95 = std::numeric_limits<double>::quiet_NaN();
 };
 
 ErrorStatistics statisticsOf(std::vector<double> errors);

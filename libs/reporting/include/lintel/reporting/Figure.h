@@ -23,7 +23,7 @@ struct Curve {
   std::string title;  ///< in the key; empty: not in it
   std::vector<PlotPoint> points;
   CurveStyle style = CurveStyle::kLine;
-  std::string colour;  ///< #rrggbb; empty: by its place among the curves
+  std::string colour{};  ///< #rrggbb; empty: by its place among the curves
   double width = 1.5;
   bool dashed = false;
 };
@@ -37,15 +37,15 @@ struct Box {
 struct BoxSeries {
   std::string title;
   std::vector<Box> boxes;
-  std::string colour;  ///< empty: by its place
+  std::string colour{};  ///< empty: by its place
 };
 
 /// What a plot shows. The same figure gives the same picture, byte for byte.
 struct Figure {
   std::string title, x_label, y_label;
-  std::vector<Curve> curves;
-  std::vector<BoxSeries> boxes;
-  std::vector<std::string> x_names;  ///< instead of numbers at x = 0, 1, 2, …
+  std::vector<Curve> curves{};
+  std::vector<BoxSeries> boxes{};
+  std::vector<std::string> x_names{};  ///< instead of numbers at x = 0, 1, 2, …
   bool equal_axes = false;           ///< a metre is as long across as up
   bool log_y = false, from_zero = false;
   int width_px = 720, height_px = 360;
