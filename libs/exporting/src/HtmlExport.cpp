@@ -182,12 +182,16 @@ std::string fill(std::string_view page, const std::vector<std::pair<std::string_
 }  // namespace
 
 OutputFiles htmlFiles(const Drawing& drawing, const std::string& path) {
+  std::string wide_lines;
+  for (const char* file : {"LineSegmentsGeometry", "LineMaterial", "LineSegments2"})
+    wide_lines += library("examples/js/lines/" + std::string(file) + ".js");
   const std::string name = drawing.map->source.empty() ? "Line map" : "Line map of " + drawing.map->source;
   std::string data = mapData(drawing).dump(-1, ' ', true, Json::error_handler_t::replace);
   return {{path, fill(kViewerPage, {{"TITLE", escaped(name)},
                                     {"DATA", std::move(data)},
                                     {"THREE", library("three.min.js")},
-                                    {"CONTROLS", library("examples/js/controls/OrbitControls.js")}})}};
+                                    {"CONTROLS", library("examples/js/controls/OrbitControls.js")},
+                                    {"WIDE_LINES", std::move(wide_lines)}})}};
 }
 
 }  // namespace lintel

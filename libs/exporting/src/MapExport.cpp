@@ -17,6 +17,7 @@ namespace {
 using Layers = std::set<MapLayer>;
 const Layers kAll{MapLayer::kLines, MapLayer::kPoints, MapLayer::kKeyframes, MapLayer::kTrajectory};
 const Layers kNoPoints{MapLayer::kLines, MapLayer::kKeyframes, MapLayer::kTrajectory};
+const Layers kNoTrajectory{MapLayer::kLines, MapLayer::kPoints, MapLayer::kKeyframes};
 const Layers kOnlyLines{MapLayer::kLines};
 
 /// A form of export with the defaults under which its usual viewer shows lines.
@@ -37,6 +38,8 @@ const std::vector<Format>& formats() {
       {"obj", objFiles, LineStyle::kTubes, kOnlyLines, "meshlab FILE or Blender (import Wavefront)"},
       {"ply", plyFiles, LineStyle::kTubes, kOnlyLines, "meshlab FILE or CloudCompare"},
       {"3Dscene", sceneFiles, LineStyle::kLines, kAll, "SceneViewer3D FILE"},
+      {"simplemap", simplemapFiles, LineStyle::kLines, kNoTrajectory,
+       "MRPT's and MOLA's tools for view-based maps, e.g. observations2map"},
       {"dae", daeFiles, LineStyle::kLines, kNoPoints, "a Collada reader, e.g. f3d FILE"},
       {"x3d", x3dFiles, LineStyle::kLines, kNoPoints, "an X3D viewer or Blender (import X3D)"},
       {"csv", csvFiles, LineStyle::kLines, kOnlyLines, "any table program"},

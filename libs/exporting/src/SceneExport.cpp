@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include <mrpt/io/CMemoryStream.h>
 #include <mrpt/opengl/CCamera.h>
 #include <mrpt/opengl/CGridPlaneXY.h>
 #include <mrpt/opengl/COpenGLScene.h>
@@ -7,12 +6,12 @@
 #include <mrpt/opengl/CSetOfLines.h>
 #include <mrpt/opengl/CSetOfObjects.h>
 #include <mrpt/serialization/CArchive.h>
-#include <zlib.h>
 
 #include <algorithm>
 #include <cmath>
 #include <map>
 
+#include "GzipStream.h"
 #include "Writers.h"
 
 namespace lintel {
@@ -77,22 +76,6 @@ void lookAtMap(const Drawing& drawing, COpenGLScene& scene) {
   camera.setElevationDegrees(35);
 }
 
-std::string gzip(const char* data, std::size_t size) {
-  z_stream stream{};
-  if (deflateInit2(&stream, Z_BEST_SPEED, Z_DEFLATED, 15 + 16, 8, Z_DEFAULT_STRATEGY) != Z_OK)
-    throw ExportError("zlib does not start");
-  std::string out(deflateBound(&stream, size) + 32, '\0');
-  stream.next_in = reinterpret_cast<Bytef*>(const_cast<char*>(data));
-  stream.next_out = reinterpret_cast<Bytef*>(out.data());
-  stream.avail_in = static_cast<uInt>(size);
-  stream.avail_out = static_cast<uInt>(out.size());
-  const int ended = deflate(&stream, Z_FINISH);
-  out.resize(stream.total_out);
-  deflateEnd(&stream);
-  if (ended != Z_STREAM_END) throw ExportError("zlib does not end");
-  return out;
-}
-
 }  // namespace
 
 OutputFiles sceneFiles(const Drawing& drawing, const std::string& path) {
@@ -106,10 +89,10 @@ OutputFiles sceneFiles(const Drawing& drawing, const std::string& path) {
     scene.insert(objects);
   }
   lookAtMap(drawing, scene);
-  mrpt::io::CMemoryStream memory;
-  auto archive = mrpt::serialization::archiveFrom(memory);
+  GzipStream stream;
+  auto archive = mrpt::serialization::archiveFrom(stream);
   archive << scene;
-  return {{path, gzip(static_cast<const char*>(memory.getRawBufferData()), memory.getTotalBytesCount())}};
+  return {{path, stream.finish()}};
 }
 
 }  // namespace lintel

@@ -5,7 +5,8 @@
 
 namespace lintel {
 
-/// page/viewer.html, with the marks [[TITLE]], [[DATA]], [[THREE]] and [[CONTROLS]] to be filled; made by CMake.
+/// page/viewer.html, with the marks [[TITLE]], [[DATA]], [[THREE]], [[CONTROLS]] and [[WIDE_LINES]] to be
+/// filled; made by CMake.
 extern const std::string_view kViewerPage;
 
 /// Where Debian's libjs-three keeps three.js.

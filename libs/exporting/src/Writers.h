@@ -26,6 +26,7 @@ OutputFiles gltfFiles(const Drawing& drawing, const std::string& path);   // glT
 OutputFiles daeFiles(const Drawing& drawing, const std::string& path);    // Collada
 OutputFiles x3dFiles(const Drawing& drawing, const std::string& path);    // X3D
 OutputFiles sceneFiles(const Drawing& drawing, const std::string& path);  // MRPT COpenGLScene
+OutputFiles simplemapFiles(const Drawing& drawing, const std::string& path);  // MRPT CSimpleMap: keyframes
 OutputFiles dxfFiles(const Drawing& drawing, const std::string& path);    // CAD, lines on layers
 OutputFiles pngFiles(const Drawing& drawing, const std::string& path);    // picture of three views
 OutputFiles htmlFiles(const Drawing& drawing, const std::string& path);   // page that shows the map in a browser

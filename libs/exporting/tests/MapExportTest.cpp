@@ -268,7 +268,7 @@ TEST_P(EveryFormat, TakesAnEmptyMapAndASingleLine) {
   LineMap one;
   addLine(one, {0, 0, 0}, {0, 0, 1}, -1);
   EXPECT_EQ(exportMap(one, map()).lines, 1u);
-  EXPECT_GT(content(map()).size(), 100u);
+  EXPECT_GT(content(map()).size(), GetParam() == "simplemap" ? 40u : 100u);  // it holds keyframes: none
 }
 
 TEST_P(EveryFormat, ReportsAFullDiskAndLeavesNoFile) {
