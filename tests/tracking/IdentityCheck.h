@@ -1,0 +1,71 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <Eigen/Core>
+#include <cstdint>
+#include <iosfwd>
+#include <map>
+#include <vector>
+
+#include "TrueEdges.h"
+#include "lintel/tracking/FrameTracks.h"
+
+namespace lintel::truth {
+
+/// Holds tracked lines against true edges.
+///
+/// A sighting is *anchored* to the true edge nearest to both of its ends, when that is within 1.5 px, shows along at
+/// least half of the sighting, and the next other edge is 2 px further off. An identity *switches* when it is anchored
+/// to another edge than before and its first edge is now more than 4 px away from the sighting (pieces of one straight
+/// edge lie in line, so that passing from one to the next is none). It *leaves* its edge when it is 4 px away from it
+/// without being on another one: shadows, textures, contours of round things, which are no true edges.
+class IdentityCheck {
+ public:
+  explicit IdentityCheck(const TrueEdges& edges) : edges_(edges) {}
+
+  void add(const FrameTracks& tracks);
+
+  int identities() const { return static_cast<int>(lives_.size()); }
+  int anchored() const;  ///< identities anchored in at least two frames
+  int switched() const;  ///< of them with a switch
+  int left() const;      ///< of them that left their edge for at least three frames, without a switch
+
+  /// Distances of ends from the true edge over their sigma, of sightings without another true edge within 6 px.
+  struct SigmaRatios {
+    std::size_t count = 0;
+    double typical = 0;      ///< median / 0.6745: 1 when honest and normal
+    double rms = 0;          ///< of those below 4 px
+    double beyond_3 = 0;     ///< share beyond 3 sigma; 0.003 when honest and normal
+    double error_px = 0;     ///< median / 0.6745 of the distances themselves
+  };
+  SigmaRatios sigmaRatios() const;
+
+  /// A line for every switch.
+  void printSwitches(std::ostream& out) const;
+
+ private:
+  struct Life {
+    int frames = 0, anchored = 0, edge = -1, away = 0;
+    bool switched = false;
+  };
+  struct Switch {
+    std::int64_t t_ns;
+    TrackId id;
+    int from, to;
+    Eigen::Vector2d middle_px;
+    double off_px;
+  };
+  struct Anchor {
+    int edge = -1;
+    bool isolated = false;
+    double start_px = 0, end_px = 0;  ///< signed distances
+  };
+  Anchor anchorOf(const Eigen::Vector2d& start, const Eigen::Vector2d& end, const std::vector<SeenEdge>& seen) const;
+
+  const TrueEdges& edges_;
+  std::map<TrackId, Life> lives_;
+  std::vector<Switch> switches_;
+  std::vector<std::pair<double, double>> errors_;  ///< of an end [px], and its sigma
+};
+
+}  // namespace lintel::truth
