@@ -15,6 +15,11 @@ _lintel_settings() {
         /: *[^ ]/ { key = path[0]; for (i = 1; i <= depth; ++i) key = key "." path[i]; print key "=" }'
 }
 
+# forms of export, as lintel-map ($1) lists them
+_lintel_forms() {
+    "$1" --help 2>/dev/null | sed -n 's/.*its extension chooses the form: //p'
+}
+
 # Names of files that match one of the extensions $2 ("*" for any), and folders.
 _lintel_files() {
     local name IFS=$'\n'
@@ -48,7 +53,7 @@ _lintel() {
             compopt -o nospace 2>/dev/null
             return ;;
         *EXT,*)
-            COMPREPLY=($(compgen -W 'glb gltf obj ply 3Dscene dae x3d csv json dxf png html none' -- "$current"))
+            COMPREPLY=($(compgen -W "none $(_lintel_forms "${program/%lintel-vio/lintel-map}")" -- "$current"))
             return ;;
         *.yaml*) _lintel_files "$current" 'yaml|yml'; return ;;
         *MAP.lintel*) _lintel_files "$current" 'lintel'; return ;;
