@@ -32,7 +32,8 @@ class BackEnd {
       const StageClock::Scope scope(s.estimation);
       update = estimator_.process(frame.tracks, frame.step.imu);
     }
-    if (s.frames++ == 0) first_t_ns_ = update.t_ns;
+    if (s.frames++ == 0) s.first_frame_ns = update.t_ns;
+    s.last_frame_ns = update.t_ns;
     count(update);
     map_.add(update);
     if (update.hasPose()) result_.trajectory.push_back({update.t_ns, update.T_w_b});
@@ -59,7 +60,7 @@ class BackEnd {
  private:
   void count(const WindowUpdate& update) {
     OdometryStatistics& s = result_.statistics;
-    const double t_s = 1e-9 * static_cast<double>(update.t_ns - first_t_ns_);
+    const double t_s = 1e-9 * static_cast<double>(update.t_ns - s.first_frame_ns);
     if (update.hasPose()) {
       ++s.frames_with_pose;
       if (s.first_pose_s < 0) s.first_pose_s = t_s;
@@ -85,7 +86,6 @@ class BackEnd {
   MapBuilder map_;
   const OdometryObserver& observer_;
   OdometryResult& result_;
-  std::int64_t first_t_ns_ = 0;
 };
 
 /// Reading and tracking: the first half. False at the end of the recording; a fault ends it with `error` set.

@@ -78,6 +78,8 @@ std::string statisticsJson(const OdometryResult& result, double wall_s, const st
   const Json json{
       {"frames", s.frames},
       {"frames_with_pose", s.frames_with_pose},
+      {"first_frame_ns", s.first_frame_ns},
+      {"last_frame_ns", s.last_frame_ns},
       {"window_frames", s.window_frames},
       {"keyframes", s.keyframes},
       {"first_pose_s", s.first_pose_s},

@@ -97,9 +97,10 @@ std::string settingsOf(const Figure& figure) {
   std::string s = "set encoding utf8\nset terminal svg noenhanced fixed rounded size " + std::to_string(figure.width_px) +
                   "," + std::to_string(figure.height_px) + " font \"sans-serif,13\" background \"white\"\n";
   s += "set grid lc rgb \"#dddddd\" lw 0.7\nset border 3 lc rgb \"#666666\"\nset tics nomirror textcolor rgb \"#222222\"\n";
-  s += "set key outside below center horizontal samplen 2\nset style line 1 lw 1.5\n";
+  s += "set key outside top center horizontal samplen 2\nset style line 1 lw 1.5\n";
   if (!figure.title.empty()) s += "set title " + quoted(figure.title) + "\n";
   s += "set xlabel " + quoted(figure.x_label) + "\nset ylabel " + quoted(figure.y_label) + "\n";
+  s += figure.equal_axes ? "" : "set autoscale xfix\n";
   if (figure.equal_axes) s += "set size ratio -1\n";
   if (figure.log_y) s += "set logscale y\nset format y \"%g\"\n";
   if (figure.from_zero) s += "set yrange [0:*]\n";
