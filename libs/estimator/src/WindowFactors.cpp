@@ -11,11 +11,13 @@ std::shared_ptr<const StateManifold> manifoldOf(BlockKey::Kind kind) {
   static const std::shared_ptr<const StateManifold> motion = std::make_shared<VectorManifold>(kMotionSize);
   static const std::shared_ptr<const StateManifold> correction = std::make_shared<VectorManifold>(kCorrectionSize);
   static const std::shared_ptr<const StateManifold> point = std::make_shared<PointManifold>();
+  static const std::shared_ptr<const StateManifold> direction = std::make_shared<DirectionManifold>();
   switch (kind) {
     case BlockKey::kPose:
     case BlockKey::kExtrinsics: return pose;
     case BlockKey::kMotion: return motion;
     case BlockKey::kCorrection: return correction;
+    case BlockKey::kDirection: return direction;
     case BlockKey::kPoint: return point;
     case BlockKey::kLine: return line;
   }

@@ -13,8 +13,8 @@ struct SolveSummary {
   bool usable = false;
 };
 
-/// Minimises the given residuals over all blocks of the window they touch (Levenberg-Marquardt, Schur complement over
-/// points and lines). One thread and a limit on iterations, not on time: the same result every run.
+/// Minimises the given residuals over all blocks of the window they touch: Levenberg-Marquardt on ReducedSystem. One
+/// thread and a limit on iterations, not on time: the same result every run.
 SolveSummary solveWindow(SlidingWindow& window, const std::vector<Factor>& factors, const CalibrationParams& calibration,
                          int max_iterations);
 

@@ -7,6 +7,7 @@
 #include <random>
 
 #include "PointTriangulation.h"
+#include "DenseReference.h"
 #include "TestWindow.h"
 #include "WindowMarginalization.h"
 #include "lintel/factors/PriorFactors.h"

@@ -8,6 +8,7 @@
 #include "LineTriangulation.h"
 #include "Marginalizer.h"
 #include "PointTriangulation.h"
+#include "DenseReference.h"
 #include "TestWindow.h"
 
 namespace lintel {

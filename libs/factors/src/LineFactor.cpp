@@ -8,53 +8,50 @@
 
 namespace lintel {
 
-bool LineFactor::Evaluate(double const* const* parameters, double* residuals, double** jacobians) const {
-  const ShiftedPose T_w_b(parameters[0], motion_, parameters[2][kTimeOffsetAt]);
-  const Pose T_b_c = poseFromBlock(parameters[1]);
-  const OrthonormalLine line = lineFromBlock(parameters[3]);
+void LineFactor::linearise(const CameraView& view, const double* correction, const double* line_block, bool jacobians,
+                           LineLinearisation& out) const {
+  const OrthonormalLine line = lineFromBlock(line_block);
   const Eigen::Matrix3d U = line.U.toRotationMatrix();
   const double cosine = std::cos(line.phi), sine = std::sin(line.phi);
-  const Eigen::Vector3d n_w = cosine * U.col(0), d_w = sine * U.col(1);
-  const Eigen::Matrix3d &R_w_b = T_w_b.R_w_b, R_b_w = R_w_b.transpose(), R_c_b = T_b_c.R().transpose();
-  const Eigen::Vector3d p_w_c = R_w_b * T_b_c.p + T_w_b.p_w_b;
-  const Eigen::Vector3d n_b = R_b_w * (n_w + (origin_w_ - p_w_c).cross(d_w));  // moment about the camera, body axes
-  const Eigen::Vector3d l = R_c_b * n_b;
+  const Eigen::Vector3d n_w = cosine * U.col(0), d_w = sine * U.col(1), from_camera_w = origin_w_ - view.p_w_c;
+  const Eigen::Vector3d l = view.R_c_w * (n_w + from_camera_w.cross(d_w));  // moment about the camera, its axes
   const double m = std::max(l.head<2>().norm(), 1e-12);
 
-  const Eigen::Vector3d ends[2] = {start_.corrected(parameters[2]).homogeneous(), end_.corrected(parameters[2]).homogeneous()};
+  const Eigen::Vector3d ends[2] = {start_.corrected(correction).homogeneous(), end_.corrected(correction).homogeneous()};
   const Eigen::Vector2d normal = l.head<2>() / m;
   Eigen::Matrix<double, 2, 3> d_l;  // d r / d l
   for (int k = 0; k < 2; ++k) {
     const double distance = ends[k].dot(l) / m;
-    residuals[k] = weight_ * distance;
+    out.residual[k] = weight_ * distance;
     d_l.row(k) = weight_ / m * (ends[k].transpose() - distance * Eigen::RowVector3d(normal.x(), normal.y(), 0));
   }
-  if (!jacobians) return true;
+  if (!jacobians) return;
 
-  const Eigen::Matrix<double, 2, 3> d_nb = d_l * R_c_b;
-  const Eigen::Matrix<double, 2, 3> d_nw = d_nb * R_b_w;
-  const Eigen::Matrix<double, 2, 3> d_centre = d_nw * skew(d_w);  // d r / d p_w_c
-  const Eigen::Matrix<double, 2, 3> d_rotation = d_nb * skew(n_b) - d_centre * R_w_b * skew(T_b_c.p);
-  if (jacobians[0]) T_w_b.writePoseJacobian(d_centre, d_rotation, jacobians[0]);
-  if (jacobians[1]) {
-    Eigen::Map<Eigen::Matrix<double, 2, kPoseSize, Eigen::RowMajor>> J(jacobians[1]);
-    J.leftCols<3>() = d_centre * R_w_b;
-    J.rightCols<4>() = d_l * skew(l) * rotationLift(T_b_c.q);
-  }
-  if (jacobians[2]) {
-    Eigen::Map<Eigen::Matrix<double, 2, kCorrectionSize, Eigen::RowMajor>> J(jacobians[2]);
-    J.row(0) = weight_ * normal.transpose() * start_.correction_jacobian;
-    J.row(1) = weight_ * normal.transpose() * end_.correction_jacobian;
-    J.col(kTimeOffsetAt) += T_w_b.offsetJacobian(d_centre, d_rotation);
-  }
+  const Eigen::Matrix<double, 2, 3> d_nw = d_l * view.R_c_w;
+  out.d_camera.leftCols<3>() = d_nw * skew(d_w);
+  out.d_camera.rightCols<3>() = d_l * skew(l);
+  out.d_intrinsics.row(0) = weight_ * normal.transpose() * start_.correction_jacobian.leftCols<kIntrinsicsSize>();
+  out.d_intrinsics.row(1) = weight_ * normal.transpose() * end_.correction_jacobian.leftCols<kIntrinsicsSize>();
+  const Eigen::Matrix<double, 2, 3> d_dw = d_nw * skew(from_camera_w);
+  // u1 and u2 turn with U: d(U e) = -U [e]x dpsi
+  const Eigen::Matrix<double, 2, 3> nU = cosine * d_nw * U, dU = sine * d_dw * U;
+  out.d_line.col(0) = dU.col(2);
+  out.d_line.col(1) = -nU.col(2);
+  out.d_line.col(2) = nU.col(1) - dU.col(0);
+  out.d_line.col(3) = -sine * d_nw * U.col(0) + cosine * d_dw * U.col(1);
+}
+
+bool LineFactor::Evaluate(double const* const* parameters, double* residuals, double** jacobians) const {
+  const CameraView view(parameters[0], parameters[1], parameters[2], motion_, jacobians != nullptr);
+  LineLinearisation result;
+  linearise(view, parameters[2], parameters[3], jacobians != nullptr, result);
+  Eigen::Vector2d::Map(residuals) = result.residual;
+  if (!jacobians) return true;
+  view.writeJacobians(parameters[0], parameters[1], result.d_camera, result.d_intrinsics, jacobians);
   if (jacobians[3]) {
-    const Eigen::Matrix<double, 2, 3> d_dw = d_nw * skew(origin_w_ - p_w_c);
-    // u1 and u2 turn with U: d(U e) = -U [e]x dpsi
-    const Eigen::Matrix<double, 2, 3> d_psi = -cosine * d_nw * U * skew(Eigen::Vector3d::UnitX()) -
-                                              sine * d_dw * U * skew(Eigen::Vector3d::UnitY());
     Eigen::Map<Eigen::Matrix<double, 2, kLineSize, Eigen::RowMajor>> J(jacobians[3]);
-    J.leftCols<4>() = d_psi * rotationLift(line.U);
-    J.col(4) = -sine * d_nw * U.col(0) + cosine * d_dw * U.col(1);
+    J.leftCols<4>() = result.d_line.leftCols<3>() * rotationLift(lineFromBlock(parameters[3]).U);
+    J.col(4) = result.d_line.col(3);
   }
   return true;
 }

@@ -107,4 +107,29 @@ RowMajorMatrix LineManifold::differenceJacobian(const double* y, const double* x
   return J;
 }
 
+bool DirectionManifold::Plus(const double* x, const double* delta, double* y) const {
+  const Eigen::Vector3d d = Eigen::Vector3d::Map(x);
+  Eigen::Vector3d::Map(y) = (d + tangentBasis(d) * Eigen::Vector2d::Map(delta)).normalized();
+  return true;
+}
+bool DirectionManifold::PlusJacobian(const double* x, double* jacobian) const {
+  RowMajorMap(jacobian, 3, 2) = tangentBasis(Eigen::Vector3d::Map(x));
+  return true;
+}
+bool DirectionManifold::Minus(const double* y, const double* x, double* delta) const {
+  const Eigen::Vector3d to = Eigen::Vector3d::Map(y), from = Eigen::Vector3d::Map(x);
+  Eigen::Vector2d::Map(delta) = tangentBasis(from).transpose() * to / from.dot(to);
+  return true;
+}
+bool DirectionManifold::MinusJacobian(const double* x, double* jacobian) const {
+  RowMajorMap(jacobian, 2, 3) = differenceJacobian(x, x);
+  return true;
+}
+RowMajorMatrix DirectionManifold::differenceJacobian(const double* y, const double* x) const {
+  const Eigen::Vector3d to = Eigen::Vector3d::Map(y), from = Eigen::Vector3d::Map(x);
+  const Eigen::Matrix<double, 2, 3> Bt = tangentBasis(from).transpose();
+  const double cosine = from.dot(to);
+  return Bt / cosine - Bt * to * from.transpose() / (cosine * cosine);
+}
+
 }  // namespace lintel

@@ -11,6 +11,7 @@
 #include "lintel/factors/Manifolds.h"
 #include "lintel/factors/PointFactor.h"
 #include "lintel/factors/PriorFactors.h"
+#include "lintel/factors/StructuralFactor.h"
 #include "lintel/geometry/Frames.h"
 #include "lintel/geometry/Rotation.h"
 
@@ -129,6 +130,37 @@ TEST(LineFactor, GradientsFromFarToNearlyThroughTheCameraAndTheOrigin) {
                       {s.T_w_bi.data(), s.T_b_c.data(), s.correction.data(), line.data()}, 1e-5);
     }
   }
+}
+
+LineBlock lineAlong(const Eigen::Vector3d& d, const Eigen::Vector3d& p = {1, 2, 0.5}) {
+  return toBlock(toOrthonormal(lineThrough(p, p + d)));
+}
+
+TEST(StructuralFactors, AreTheSineOfTheAngleWhateverTheSign) {
+  const double angle = 0.3;
+  const LineBlock i = lineAlong({1, 0, 0}), j = lineAlong({std::cos(angle), std::sin(angle), 0});
+  const DirectionBlock along(1, 0, 0), against(-std::cos(angle), -std::sin(angle), 0);
+  Eigen::Vector3d r;
+  const double *pair[] = {i.data(), j.data()}, *parallel[] = {i.data(), along.data()}, *turned[] = {i.data(), against.data()};
+  ASSERT_TRUE(ParallelLinesFactor(50).Evaluate(pair, r.data(), nullptr));
+  EXPECT_NEAR(r.norm(), 50 * std::sin(angle), 1e-12);
+  ASSERT_TRUE(SharedDirectionFactor(50).Evaluate(parallel, r.data(), nullptr));
+  EXPECT_NEAR(r.norm(), 0, 1e-12);
+  ASSERT_TRUE(SharedDirectionFactor(50).Evaluate(turned, r.data(), nullptr));
+  EXPECT_NEAR(r.norm(), 50 * std::sin(angle), 1e-12);
+}
+
+TEST(StructuralFactors, GradientsFromParallelToPerpendicularAndForLinesThroughTheOrigin) {
+  const DirectionManifold direction_manifold;
+  const Eigen::Vector3d axis = Eigen::Vector3d(0.2, 0.3, -0.9).normalized(), d(1, 0.1, 0.3);
+  for (const Eigen::Vector3d& p : {Eigen::Vector3d(1, 2, 0.5), Eigen::Vector3d(0, 0, 1e-5), Eigen::Vector3d(0, 90, 0)})
+    for (const double angle : {0.0, 1e-6, 0.01, 1.0, 1.57, 3.1}) {
+      const Eigen::Vector3d turned = Eigen::AngleAxisd(angle, axis) * d;
+      const LineBlock i = lineAlong(d, p), j = lineAlong(turned);
+      const DirectionBlock group = turned.normalized();
+      expectGradients(SharedDirectionFactor(57), {&kLineManifold, &direction_manifold}, {i.data(), group.data()});
+      expectGradients(ParallelLinesFactor(57), {&kLineManifold, &kLineManifold}, {i.data(), j.data()});
+    }
 }
 
 std::shared_ptr<Preintegration> somePreintegration() {

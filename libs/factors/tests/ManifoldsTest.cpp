@@ -57,6 +57,13 @@ void expectDifferenceJacobian(const StateManifold& manifold, const Eigen::Vector
 const Eigen::VectorXd kPose = toBlock(Pose{expRotation({0.3, -0.2, 0.9}), {1, 2, 3}});
 const Eigen::VectorXd kLine = toBlock(OrthonormalLine{expRotation({-0.4, 0.1, 0.5}), 0.7});
 
+const Eigen::VectorXd kDirection = Eigen::Vector3d(0.3, -0.5, 0.8).normalized();
+
+TEST(DirectionManifold, Invariants) { expectInvariants(DirectionManifold(), kDirection); }
+TEST(DirectionManifold, DifferenceJacobianFarFromTheLinearisation) {
+  expectDifferenceJacobian(DirectionManifold(), kDirection);
+}
+
 TEST(PoseManifold, Invariants) { expectInvariants(PoseManifold(), kPose); }
 TEST(LineManifold, Invariants) { expectInvariants(LineManifold(), kLine); }
 TEST(PointManifold, Invariants) { expectInvariants(PointManifold(), Eigen::Vector4d(0.1, -0.5, 0.3, 0.2).normalized()); }

@@ -22,9 +22,9 @@ using FrameId = std::uint64_t;  ///< counts the frames that entered the window
 
 /// Names a parameter block of the window. Blocks move in memory, keys stay.
 struct BlockKey {
-  enum Kind { kPose, kMotion, kExtrinsics, kCorrection, kPoint, kLine };
+  enum Kind { kPose, kMotion, kExtrinsics, kCorrection, kDirection, kPoint, kLine };
   Kind kind = kPose;
-  std::uint64_t id = 0;  ///< frame, point or line; 0 for the calibration
+  std::uint64_t id = 0;  ///< frame, direction, point or line; 0 for the calibration
   bool operator<(const BlockKey& o) const { return kind != o.kind ? kind < o.kind : id < o.id; }
   bool operator==(const BlockKey& o) const { return kind == o.kind && id == o.id; }
 };
@@ -96,6 +96,7 @@ class SlidingWindow {
   std::deque<WindowFrame> frames;             ///< ascending time; the last is the newest
   std::map<TrackId, PointTrack> points;       ///< ordered: the same sums in the same order every run
   std::map<TrackId, LineTrack> lines;
+  std::map<std::uint64_t, DirectionBlock> directions;  ///< shared by groups of parallel lines
   PoseBlock extrinsics;                       ///< T_b_c
   CorrectionBlock correction = CorrectionBlock::Zero();
   std::vector<WindowPrior> priors;            ///< from marginalisation and from initialisation

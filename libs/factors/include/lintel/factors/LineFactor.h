@@ -3,6 +3,7 @@
 
 #include <ceres/sized_cost_function.h>
 
+#include "lintel/factors/CameraView.h"
 #include "lintel/factors/FrameMotion.h"
 #include "lintel/factors/StateBlocks.h"
 
@@ -19,6 +20,14 @@ struct NormalisedObservation {
   }
 };
 
+/// A line residual at some states.
+struct LineLinearisation {
+  Eigen::Vector2d residual;
+  CameraJacobian d_camera;
+  IntrinsicsJacobian d_intrinsics;
+  Eigen::Matrix<double, 2, kLineTangent> d_line;  ///< tangent
+};
+
 /// Distances of the two observed end points to the projected infinite line, on the normalised plane
 /// ([Lim2021] line residual, [Bartoli2005]):
 ///
@@ -33,6 +42,11 @@ class LineFactor final : public ceres::SizedCostFunction<2, kPoseSize, kPoseSize
              const Eigen::Vector3d& origin_w, double weight)
       : start_(start), end_(end), motion_(motion), origin_w_(origin_w), weight_(weight) {}
   bool Evaluate(double const* const* parameters, double* residuals, double** jacobians) const override;
+
+  /// The residual seen from a camera that is known already; Jacobians only when asked for.
+  void linearise(const CameraView& view, const double* correction, const double* line, bool jacobians,
+                 LineLinearisation& out) const;
+  const FrameMotion& motion() const { return motion_; }
 
  private:
   NormalisedObservation start_, end_;

@@ -73,4 +73,17 @@ class LineManifold final : public StateManifold {
   RowMajorMatrix differenceJacobian(const double* y, const double* x) const override;
 };
 
+/// The unit sphere in R^3 in gnomonic coordinates about x: Plus and Minus are inverses of each other on the half sphere
+/// around x.
+class DirectionManifold final : public StateManifold {
+ public:
+  int AmbientSize() const override { return 3; }
+  int TangentSize() const override { return 2; }
+  bool Plus(const double* x, const double* delta, double* y) const override;
+  bool PlusJacobian(const double* x, double* jacobian) const override;
+  bool Minus(const double* y, const double* x, double* delta) const override;
+  bool MinusJacobian(const double* x, double* jacobian) const override;
+  RowMajorMatrix differenceJacobian(const double* y, const double* x) const override;
+};
+
 }  // namespace lintel

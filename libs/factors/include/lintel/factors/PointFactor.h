@@ -3,11 +3,20 @@
 
 #include <ceres/sized_cost_function.h>
 
+#include "lintel/factors/CameraView.h"
 #include "lintel/factors/FrameMotion.h"
 #include "lintel/factors/StateBlocks.h"
 #include "lintel/geometry/PinholeRadtan.h"
 
 namespace lintel {
+
+/// A point residual at some states.
+struct PointLinearisation {
+  Eigen::Vector2d residual;
+  CameraJacobian d_camera;
+  IntrinsicsJacobian d_intrinsics;
+  Eigen::Matrix<double, 2, kPointSize> d_point;  ///< ambient
+};
 
 /// Reprojection of a homogeneous point (X, w), X / w relative to the constant world point `origin_w`, in raw pixels:
 ///
@@ -22,6 +31,11 @@ class PointFactor final : public ceres::SizedCostFunction<2, kPoseSize, kPoseSiz
               const Eigen::Vector3d& origin_w, double sigma_px)
       : px_(px), camera_(camera), motion_(motion), origin_w_(origin_w), weight_(1 / sigma_px) {}
   bool Evaluate(double const* const* parameters, double* residuals, double** jacobians) const override;
+
+  /// The residual seen from a camera that is known already; Jacobians only when asked for.
+  void linearise(const CameraView& view, const double* correction, const double* point, bool jacobians,
+                 PointLinearisation& out) const;
+  const FrameMotion& motion() const { return motion_; }
 
  private:
   Eigen::Vector2d px_;

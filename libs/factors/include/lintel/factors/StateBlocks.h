@@ -17,17 +17,21 @@ namespace lintel {
 //   line       5 -> 4   orthonormal line (PluckerLine.h): U as quaternion x y z w, phi; U <- U Exp(dpsi), phi += dphi.
 //                       World axes; the moment is about a constant point near the line (LineFactor.h)
 //   point      4 -> 3   homogeneous point (X, w) of unit length: X / w [m] in world axes from a constant origin
+//   direction  3 -> 2   unit vector, world axes: the direction that a group of lines shares; d <- (d + B delta) / norm
+//                       with B = tangentBasis(d)
 //   correction 7        what the calibrated camera is wrong by: fx fy cx cy [px], k1 k2, time offset [s]
 constexpr int kPoseSize = 7, kPoseTangent = 6;
 constexpr int kMotionSize = 9, kVelocityAt = 0, kBiasGyroAt = 3, kBiasAccelAt = 6;
 constexpr int kLineSize = 5, kLineTangent = 4;
 constexpr int kPointSize = 4, kPointTangent = 3;
+constexpr int kDirectionSize = 3, kDirectionTangent = 2;
 constexpr int kCorrectionSize = 7, kTimeOffsetAt = 6;
 
 using PoseBlock = Eigen::Matrix<double, kPoseSize, 1>;
 using MotionBlock = Eigen::Matrix<double, kMotionSize, 1>;
 using PointBlock = Eigen::Matrix<double, kPointSize, 1>;
 using LineBlock = Eigen::Matrix<double, kLineSize, 1>;
+using DirectionBlock = Eigen::Matrix<double, kDirectionSize, 1>;
 using CorrectionBlock = Eigen::Matrix<double, kCorrectionSize, 1>;
 
 /// d normalised observation / d correction: how one image observation moves with the camera correction.

@@ -1,0 +1,78 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <Eigen/Core>
+#include <map>
+#include <set>
+#include <vector>
+
+#include "LandmarkSystem.h"
+#include "WindowFactors.h"
+#include "lintel/estimator/SlidingWindow.h"
+
+namespace lintel {
+
+/// Normal equations in the tangent spaces of some blocks: H dx = -b.
+struct NormalEquations {
+  std::vector<BlockKey> blocks;          ///< in the order of H
+  std::vector<Eigen::Index> offsets;     ///< of the blocks in H; one more entry for the end
+  Eigen::MatrixXd H;
+  Eigen::VectorXd b;
+};
+
+/// The normal equations of a window's residuals with all points and lines eliminated (Schur complement [Triggs2000]).
+///
+/// The residuals of an image share its camera. They are summed in the tangent spaces of the cameras (six numbers each,
+/// plus the intrinsics and the shared directions), landmarks are eliminated there, and one chain rule for each camera
+/// carries the sum over to poses, extrinsics and time offset. Robust losses count as weights.
+class ReducedSystem {
+ public:
+  /// States in `first` come first; those in `frozen` are constants. Factors and window must outlive the system.
+  ReducedSystem(SlidingWindow& window, const std::vector<Factor>& factors, const std::set<BlockKey>& first,
+                const std::set<BlockKey>& frozen);
+
+  /// Half the sum of (robust) squares at the window's present values.
+  double cost() const;
+
+  /// Takes residuals and Jacobians at the present values; returns their cost.
+  double linearise();
+
+  /// The states' equations with landmarks eliminated as they are; directions without information stay out.
+  NormalEquations eliminate();
+
+  /// Solves with `damping` times the diagonal added [Levenberg]. False when the system is not positive definite.
+  bool solve(double damping);
+
+  /// By how much the linear model says that the cost falls with the last solution.
+  double modelDecrease() const { return model_decrease_; }
+
+  /// Moves the window's blocks by the last solution; takes that back.
+  void apply();
+  void revert();
+
+ private:
+  void placeStates(const std::vector<Factor>& factors, const std::set<BlockKey>& first, const std::set<BlockKey>& frozen);
+  Eigen::Index offsetOf(const BlockKey& key) const;  ///< negative when frozen or absent
+  std::vector<CameraView> views(bool derivatives) const;
+  double addOther(const Factor& factor);
+
+  /// How a part of the cameras' tangent space hangs on a state.
+  struct Chain {
+    Eigen::Index row, column;  ///< in CameraEquations, in the states
+    Eigen::MatrixXd G;
+  };
+  std::vector<Chain> chains() const;
+  static void addVision(const std::vector<Chain>& chains, const CameraEquations& vision, Eigen::MatrixXd& H,
+                        Eigen::VectorXd& b);
+
+  SlidingWindow& window_;
+  std::vector<Factor> others_;           // without points and lines
+  LandmarkSystem landmarks_;
+  NormalEquations states_;               // of the others alone, lower triangle
+  std::vector<CameraView> views_;        // at the last linearisation
+  Eigen::VectorXd step_;
+  std::vector<double> saved_;
+  double damping_ = 0, model_decrease_ = 0;
+};
+
+}  // namespace lintel

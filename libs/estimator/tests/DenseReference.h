@@ -1,0 +1,19 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <set>
+#include <vector>
+
+#include "ReducedSystem.h"
+
+namespace lintel::test {
+
+/// The normal equations of some residuals, every block in one dense matrix, by the factors' own Jacobians: slow and
+/// plain, the reference for ReducedSystem. Blocks in `first` come first (points and lines before others).
+NormalEquations linearise(SlidingWindow& window, const std::vector<Factor>& factors, const std::set<BlockKey>& first);
+
+/// Minimises the residuals with Ceres on copies of the blocks, then writes them back; returns the final cost. The
+/// reference for WindowSolver.
+double solveWithCeres(SlidingWindow& window, const std::vector<Factor>& factors);
+
+}  // namespace lintel::test
