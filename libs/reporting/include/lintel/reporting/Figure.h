@@ -23,7 +23,7 @@ struct Curve {
   std::string title;  ///< in the key; empty: not in it
   std::vector<PlotPoint> points;
   CurveStyle style = CurveStyle::kLine;
-  std::string colour{};  ///< #rrggbb; empty: by its place among the curves
+  std::string colour{};  ///< "\#rrggbb"; empty: by its place among the curves
   double width = 1.5;
   bool dashed = false;
 };

@@ -29,7 +29,7 @@ class EurocWriter {
   /// mav0/body.yaml and the sensor.yaml of cam0, imu0 and the ground truth.
   void writeSensors(const Rig& rig) const;
 
-  /// One image, mav0/cam0/data/<t_ns>.png. May be called from several threads.
+  /// One image, mav0/cam0/data/T_NS.png. May be called from several threads.
   void writeImage(std::int64_t t_ns, const GrayImage& image) const;
   void writeImageList(const std::vector<std::int64_t>& stamps) const;
 
