@@ -149,7 +149,8 @@ TrajectoryErrors evaluateTrajectory(const StampedPoses& estimate, const StampedP
   result.scale = sim3.scale;
   result.position_sim3_m = statisticsOf(distancesAfter(sim3, positions));
   addCoverage(result, groundtruth, pairs, params.max_gap_s);
-  result.complete = result.coverage_time >= params.complete_share;
+  const double possible_s = std::max(0.0, result.duration_s - params.start_allowance_s);
+  result.complete = result.coverage_time * result.duration_s >= params.complete_share * possible_s;
   result.whole_rmse_m = wholeRmse(result.S_truth_estimate, estimate, groundtruth, pairs, params.max_gap_s);
   addPoseErrors(result, estimate, groundtruth, pairs, params);
   return result;

@@ -95,7 +95,7 @@ class Script {
 
 std::string settingsOf(const Figure& figure) {
   std::string s = "set encoding utf8\nset terminal svg noenhanced fixed rounded size " + std::to_string(figure.width_px) +
-                  "," + std::to_string(figure.height_px) + " font \"sans-serif,13\" background \"white\"\n";
+                  "," + std::to_string(figure.height_px) + " font \"sans-serif,14\" background \"white\"\n";
   s += "set grid lc rgb \"#dddddd\" lw 0.7\nset border 3 lc rgb \"#666666\"\nset tics nomirror textcolor rgb \"#222222\"\n";
   s += "set key outside top center horizontal samplen 2\nset style line 1 lw 1.5\n";
   if (!figure.title.empty()) s += "set title " + quoted(figure.title) + "\n";

@@ -19,6 +19,7 @@ a { color: #005a9c; }
 table { border-collapse: collapse; font-size: .9rem; font-variant-numeric: tabular-nums; }
 caption { text-align: left; padding: .2rem 0; color: #444; }
 th, td { padding: .2rem .6rem; border-bottom: 1px solid #dde; text-align: right; white-space: nowrap; }
+thead th { white-space: normal; vertical-align: bottom; max-width: 8rem; }
 th:first-child { text-align: left; }
 td.fault { color: #a02000; }
 .note { font-size: .85rem; color: #444; margin: .2rem 0; }
@@ -26,7 +27,7 @@ ul.warnings { border-left: 4px solid #d55e00; background: #fff6ee; margin: .6rem
 figure { margin: .8rem 0; break-inside: avoid; }
 figure img { max-width: 100%; height: auto; display: block; }
 figcaption { font-size: .85rem; color: #444; }
-.gallery { display: grid; grid-template-columns: repeat(auto-fit, minmax(min(100%, 19rem), 1fr)); gap: .4rem 1rem; }
+.gallery { display: grid; grid-template-columns: repeat(auto-fit, minmax(min(100%, 24rem), 1fr)); gap: .4rem 1rem; }
 pre { overflow-x: auto; background: #f5f6f8; padding: .6rem; font-size: .8rem; }
 @media print { body { max-width: none; padding: 0; font-size: 10pt; } nav, details { display: none; } .wide { overflow: visible; }
   h2, h3 { break-after: avoid; } tr { break-inside: avoid; } }

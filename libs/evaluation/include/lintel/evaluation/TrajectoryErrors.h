@@ -15,7 +15,8 @@ struct TrajectoryErrorParams {
   AlignmentKind alignment = AlignmentKind::kSe3;
   double max_difference_s = 0.01;  ///< a pose and its true partner are at most so far apart in time [s]
   double max_gap_s = 1.0;          ///< time between neighbouring poses that still counts as covered [s]
-  double complete_share = 0.9;     ///< a run that covers less of the ground truth's duration counts as incomplete
+  double start_allowance_s = 1.0;  ///< time that any visual-inertial estimate needs before its first pose [s]
+  double complete_share = 0.9;     ///< a run that covers less of the duration after that time counts as incomplete
   std::int64_t from_ns = std::numeric_limits<std::int64_t>::min();  ///< the ground truth before it does not count
   std::int64_t to_ns = std::numeric_limits<std::int64_t>::max();    ///< the ground truth after it does not count
   double max_overshoot = 0.2;      ///< a stretch of the path may be longer than asked for by this share
@@ -54,7 +55,7 @@ struct TrajectoryErrors {
   double duration_s = 0, path_m = 0;  ///< of the whole ground truth
   double coverage_time = 0;  ///< share of the ground truth's duration between neighbouring pairs (gaps left out)
   double coverage_path = 0;  ///< share of the ground truth's path between neighbouring pairs (gaps left out)
-  bool complete = false;     ///< covers at least `complete_share` of the duration: comparable with other runs
+  bool complete = false;     ///< covers at least `complete_share` of what can be covered: comparable with others
   /// RMSE over the whole duration of the ground truth [m]: where there is no estimate, the one nearest in time stands
   /// in. What a run leaves out costs it what the vehicle moved meanwhile: no run gains by stopping early.
   double whole_rmse_m = 0;

@@ -1,0 +1,285 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "BenchTables.h"
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <limits>
+
+namespace lintel {
+
+namespace {
+
+constexpr double kDegrees = 180.0 / 3.14159265358979323846;
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
+using CellText = std::function<std::string(const BenchCell&)>;
+using CellValue = std::function<double(const BenchCell&)>;
+
+std::vector<std::string> columnsOf(const BenchSuite& suite, const std::string& first) {
+  std::vector<std::string> columns{first};
+  for (const BenchConfiguration& configuration : suite.configurations) columns.push_back(configuration.name);
+  return columns;
+}
+
+/// A cell's text, or why there is none; runs that failed or left out too much say so.
+Cell cellOf(const BenchCell& cell, const CellText& text) {
+  if (cell.runs() == 0) return {"not found", CellMark::kFault};
+  if (cell.missing() == cell.runs()) return {"not run yet", CellMark::kFault};
+  if (!cell.anyOk()) return {"failed", CellMark::kFault};
+  std::string shown = text(cell);
+  if (cell.failed() + cell.missing() > 0)
+    return {shown + " (" + std::to_string(cell.runs() - cell.failed() - cell.missing()) + " of " +
+                std::to_string(cell.runs()) + ")",
+            CellMark::kFault};
+  if (!cell.complete())
+    return {shown + " (" + fixedText(100 * cell.evaluation("/trajectory/coverage_time"), 0) + " %)", CellMark::kFault};
+  return shown;
+}
+
+/// Marks the lowest value of a row; a run that failed or left out too much is never the best.
+void markBest(std::vector<Cell>& row, const BenchSuite& suite, const BenchResults& results, std::size_t r,
+              const CellValue& value) {
+  double best = kInfinity;
+  const auto valueOf = [&](std::size_t c) {
+    const BenchCell& cell = results.cell(r, c);
+    const double v = value(cell);
+    return cell.runs() > 0 && cell.complete() && std::isfinite(v) ? v : kInfinity;
+  };
+  for (std::size_t c = 0; c < suite.configurations.size(); ++c) best = std::min(best, valueOf(c));
+  if (suite.configurations.size() < 2 || best == kInfinity) return;
+  for (std::size_t c = 0; c < suite.configurations.size(); ++c)
+    if (valueOf(c) == best && row[1 + c].mark == CellMark::kNone) row[1 + c].mark = CellMark::kBest;
+}
+
+std::string rmseAndMax(double rmse_m, double max_m) { return fixedText(rmse_m, 4) + "/" + fixedText(max_m, 4); }
+
+/// The paper's table: RMSE/maximum, a row a recording, beside it what others have published.
+Table accuracyTable(const BenchSuite& suite, const BenchResults& results, bool refined) {
+  const auto figure = [refined](const BenchCell& c, const std::string& path) {
+    return refined ? c.refined(path) : c.evaluation(path);
+  };
+  const CellValue rmse = [&](const BenchCell& c) { return figure(c, "/trajectory/position_m/rmse"); };
+  const CellText text = [&](const BenchCell& c) {
+    return rmseAndMax(rmse(c), figure(c, "/trajectory/position_m/max"));
+  };
+  Table table{refined ? "accuracy_refined" : "accuracy",
+              std::string("Translation error RMSE/maximum [m] after SE(3) alignment, ") +
+                  (refined ? "refined trajectory" : "causal trajectory"),
+              columnsOf(suite, "recording"),
+              {},
+              {"* best of the row. (N %): covers only so much of the recording, not comparable. (N of M): so many runs "
+               "succeeded, medians of those."}};
+  for (const auto& system : suite.published) table.columns.push_back(system.first + " (published)");
+  for (std::size_t r = 0; r < suite.recordings.size(); ++r) {
+    std::vector<Cell> row{suite.recordings[r].name};
+    for (std::size_t c = 0; c < suite.configurations.size(); ++c) row.push_back(cellOf(results.cell(r, c), text));
+    markBest(row, suite, results, r, rmse);
+    for (const auto& [system, figures] : suite.published) {
+      const auto found = figures.find(suite.recordings[r].name);
+      row.push_back(found == figures.end() ? Cell("-") : Cell(fixedText(found->second.rmse_m, 3) + "/" + fixedText(found->second.max_m, 3)));
+    }
+    table.rows.push_back(row);
+  }
+  std::vector<Cell> mean{"mean of RMSE"};
+  for (std::size_t c = 0; c < suite.configurations.size(); ++c) {
+    double sum = 0;
+    std::size_t n = 0;
+    for (std::size_t r = 0; r < suite.recordings.size(); ++r) {
+      const BenchCell& cell = results.cell(r, c);
+      if (cell.runs() == 0 || !cell.complete() || !std::isfinite(rmse(cell))) continue;
+      sum += rmse(cell);
+      ++n;
+    }
+    mean.push_back(n == 0 ? Cell("-") : Cell(fixedText(sum / static_cast<double>(n), 4) + " of " + std::to_string(n)));
+  }
+  for (const auto& system : suite.published) {
+    double sum = 0;
+    for (const auto& figure_of : system.second) sum += figure_of.second.rmse_m;
+    mean.push_back(fixedText(sum / static_cast<double>(system.second.size()), 3) + " of " + std::to_string(system.second.size()));
+  }
+  table.rows.push_back(mean);
+  return table;
+}
+
+/// A row a recording and configuration, a column a figure.
+Table detailTable(const BenchSuite& suite, const BenchResults& results, Table table,
+                  const std::vector<std::pair<std::string, CellText>>& figures) {
+  table.columns = {"recording", "configuration"};
+  for (const auto& figure : figures) table.columns.push_back(figure.first);
+  for (std::size_t r = 0; r < suite.recordings.size(); ++r)
+    for (std::size_t c = 0; c < suite.configurations.size(); ++c) {
+      const BenchCell& cell = results.cell(r, c);
+      if (!cell.anyOk()) continue;
+      std::vector<Cell> row{suite.recordings[r].name, suite.configurations[c].name};
+      for (const auto& figure : figures) row.emplace_back(figure.second(cell));
+      if (row.back().text == "-" && row[3].text == "-") continue;  // nothing to compare with
+      table.rows.push_back(row);
+    }
+  return table;
+}
+
+CellText evaluationFigure(const std::string& path, int decimals, double factor = 1) {
+  return [=](const BenchCell& c) { return fixedText(factor * c.evaluation(path), decimals); };
+}
+
+CellText statsFigure(const std::string& path, int decimals, double factor = 1) {
+  return [=](const BenchCell& c) { return fixedText(factor * c.stats(path), decimals); };
+}
+
+Table coverageTable(const BenchSuite& suite, const BenchResults& results) {
+  return detailTable(suite, results,
+                     {"coverage",
+                      "How much of each recording has a pose, and the error over all of it",
+                      {},
+                      {},
+                      {"RMSE over all: where there is no estimate, the one nearest in time stands in, so that a run that "
+                       "stops early cannot look better for it."}},
+                     {{"first pose [s]", evaluationFigure("/trajectory/start_offset_s", 2)},
+                      {"time covered [%]", evaluationFigure("/trajectory/coverage_time", 1, 100)},
+                      {"path covered [%]", evaluationFigure("/trajectory/coverage_path", 1, 100)},
+                      {"resets", statsFigure("/resets", 0)},
+                      {"RMSE [m]", evaluationFigure("/trajectory/position_m/rmse", 4)},
+                      {"RMSE over all [m]", evaluationFigure("/trajectory/whole_rmse_m", 4)},
+                      {"scale", evaluationFigure("/trajectory/scale", 4)},
+                      {"rotation RMSE [deg]", evaluationFigure("/trajectory/rotation_rad/rmse", 3, kDegrees)}});
+}
+
+/// The paper's tracking table and what the estimator made of the tracks.
+Table trackingTable(const BenchSuite& suite, const BenchResults& results) {
+  return detailTable(suite, results,
+                     {"tracking",
+                      "Tracking",
+                      {},
+                      {},
+                      {"Lines in 5 windows: share of line tracks seen in at least 10 frames, of which every second enters "
+                       "the window (the paper's table II)."}},
+                     {{"lines in 5 windows [%]", statsFigure("/tracking/lines/share_seen_in_10_frames", 1, 100)},
+                      {"median life of a line [frames]", statsFigure("/tracking/lines/median_length", 0)},
+                      {"median life of a point [frames]", statsFigure("/tracking/points/median_length", 0)},
+                      {"points used", statsFigure("/mean_points_used", 1)},
+                      {"lines tracked", statsFigure("/mean_lines_tracked", 1)},
+                      {"lines used", statsFigure("/mean_lines_used", 1)},
+                      {"of them degenerate", statsFigure("/mean_lines_degenerate", 1)}});
+}
+
+Table relativeTable(const BenchSuite& suite, const BenchResults& results) {
+  Table table{"relative",
+              "Relative translation error, median [% of the stretch]",
+              columnsOf(suite, "recording, length of the stretch"),
+              {},
+              {}};
+  for (std::size_t r = 0; r < suite.recordings.size(); ++r)
+    for (std::size_t k = 0; k < 5; ++k) {
+      const std::string at = "/trajectory/relative/" + std::to_string(k);
+      std::vector<Cell> row;
+      bool any = false;
+      double length_m = 0;
+      for (std::size_t c = 0; c < suite.configurations.size(); ++c) {
+        const BenchCell& cell = results.cell(r, c);
+        const double median_m = cell.evaluation(at + "/translation_m/median");
+        if (std::isfinite(median_m)) length_m = cell.evaluation(at + "/distance_m");
+        any = any || std::isfinite(median_m);
+        row.push_back(fixedText(100 * median_m / cell.evaluation(at + "/distance_m"), 3));
+      }
+      if (!any) continue;
+      row.insert(row.begin(), suite.recordings[r].name + ", " + fixedText(length_m, 0) + " m");
+      table.rows.push_back(row);
+    }
+  return table;
+}
+
+Table mapTable(const BenchSuite& suite, const BenchResults& results) {
+  const auto degrees = [](const std::string& path) { return evaluationFigure(path, 2, kDegrees); };
+  Table table = detailTable(suite, results,
+                     {"map", "Line map against the truth (simulated recordings)", {}, {},
+                      {"Shares of length. Directions of segments matched to a true edge, median; degenerate ones apart."}},
+                     {{"lines", statsFigure("/map_lines", 0)},
+                      {"length [m]", evaluationFigure("/lines/length_m", 1)},
+                      {"on surfaces, 2 cm", evaluationFigure("/lines/surface_precision/0", 3)},
+                      {"on surfaces, 5 cm", evaluationFigure("/lines/surface_precision/1", 3)},
+                      {"on edges, 5 cm", evaluationFigure("/lines/precision/1", 3)},
+                      {"edges found, 5 cm", evaluationFigure("/lines/recall/1", 3)},
+                      {"direction [deg]", degrees("/lines/all_matched/direction_median_rad")},
+                      {"degenerate", evaluationFigure("/lines/degenerate", 0)},
+                      {"their direction [deg]", degrees("/lines/degenerate_matched/direction_median_rad")},
+                      {"duplicates", evaluationFigure("/lines/duplicates", 2)}});
+  return table;
+}
+
+Table timingTable(const BenchSuite& suite, const BenchResults& results) {
+  std::vector<std::pair<std::string, CellText>> figures;
+  for (const char* stage : {"decoding", "tracking", "estimation"}) {
+    const std::string path = std::string("/stages/") + stage;
+    figures.emplace_back(std::string(stage) + " mean [ms]", statsFigure(path + "/mean_ms", 1));
+    figures.emplace_back("p95", statsFigure(path + "/p95_ms", 1));
+  }
+  figures.emplace_back("CPU a frame [ms]", statsFigure("/cpu_ms_per_frame", 1));
+  figures.emplace_back("frames/s", statsFigure("/frames_per_s", 0));
+  figures.emplace_back("memory [MB]", statsFigure("/peak_memory_mb", 0));
+  return detailTable(suite, results,
+                     {"timing", "CPU time of each stage", {}, {},
+                      {"Differs from run to run and from machine to machine, unlike all other tables. CPU a frame: tracking "
+                       "and estimation. frames/s: wall time, with as many jobs beside it as were asked for."}},
+                     figures);
+}
+
+Table faultTable(const BenchResults& results) {
+  Table table{"faults", "Runs without a result", {"run", "why"}, {}, {}};
+  for (const auto& [job, run] : results.runs())
+    if (!run.ok()) table.rows.push_back({job.id, {run.found ? run.fault : "not run yet", CellMark::kFault}});
+  return table;
+}
+
+bool anyFigure(const BenchSuite& suite, const BenchResults& results, const CellValue& value) {
+  for (std::size_t r = 0; r < suite.recordings.size(); ++r)
+    for (std::size_t c = 0; c < suite.configurations.size(); ++c)
+      if (std::isfinite(value(results.cell(r, c)))) return true;
+  return false;
+}
+
+nlohmann::ordered_json figuresOf(const BenchRun& run) {
+  nlohmann::ordered_json json{{"fault", run.found ? run.fault : "not run yet"}};
+  if (!run.ok()) return json;
+  json["evaluation"] = run.evaluation;
+  if (!run.evaluation_refined.is_null()) json["evaluation_refined"] = run.evaluation_refined;
+  for (const char* key : {"frames", "frames_with_pose", "keyframes", "first_pose_s", "resets", "reset_reasons",
+                          "mean_points_used", "mean_lines_tracked", "mean_lines_used", "mean_lines_degenerate",
+                          "map_points", "map_lines", "tracking", "warnings"})
+    if (run.stats.contains(key)) json["stats"][key] = run.stats[key];
+  return json;
+}
+
+}  // namespace
+
+std::vector<Table> benchTables(const BenchSuite& suite, const BenchResults& results) {
+  std::vector<Table> tables{accuracyTable(suite, results, false)};
+  if (anyFigure(suite, results, [](const auto& c) { return c.refined("/trajectory/position_m/rmse"); }))
+    tables.push_back(accuracyTable(suite, results, true));
+  tables.push_back(coverageTable(suite, results));
+  tables.push_back(trackingTable(suite, results));
+  tables.push_back(relativeTable(suite, results));
+  if (anyFigure(suite, results, [](const auto& c) { return c.evaluation("/lines/length_m"); }))
+    tables.push_back(mapTable(suite, results));
+  tables.push_back(faultTable(results));
+  tables.push_back(timingTable(suite, results));
+  return tables;
+}
+
+nlohmann::ordered_json benchJson(const BenchSuite& suite, const BenchResults& results) {
+  nlohmann::ordered_json json{{"suite", suite.name}, {"title", suite.title}, {"lintel", LINTEL_VERSION}};
+  for (const Table& table : benchTables(suite, results)) {
+    if (table.name == "timing") continue;
+    nlohmann::ordered_json rows = nlohmann::ordered_json::array();
+    for (const auto& row : table.rows) {
+      nlohmann::ordered_json texts = nlohmann::ordered_json::array();
+      for (const Cell& cell : row) texts.push_back(cell.text);
+      rows.push_back(texts);
+    }
+    json["tables"][table.name] = {{"caption", table.caption}, {"columns", table.columns}, {"rows", rows}};
+  }
+  for (const auto& [job, run] : results.runs()) json["runs"][job.id] = figuresOf(run);
+  return json;
+}
+
+}  // namespace lintel

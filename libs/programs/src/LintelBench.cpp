@@ -1,0 +1,214 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "lintel/programs/LintelBench.h"
+
+#include <CLI/App.hpp>
+#include <CLI/Config.hpp>
+#include <CLI/Formatter.hpp>
+#include <algorithm>
+#include <atomic>
+#include <chrono>
+#include <condition_variable>
+#include <exception>
+#include <filesystem>
+#include <mutex>
+#include <ostream>
+#include <thread>
+
+#include "BenchPage.h"
+#include "BenchRunner.h"
+#include "BenchTables.h"
+#include "ProgramMain.h"
+#include "Progress.h"
+#include "lintel/mapping/AtomicFile.h"
+#include "lintel/reporting/ChildProcess.h"
+
+namespace lintel {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr const char* kName = "lintel-bench";
+
+std::string examples() {
+  return "Examples:\n"
+         "  lintel-bench euroc.yaml -o out --recordings EuRoC     runs what is missing, then writes the tables\n"
+         "  lintel-bench euroc.yaml -o out --recordings EuRoC --print-jobs | parallel\n"
+         "  lintel-bench euroc.yaml -o out --recordings EuRoC --collect      the tables of what is there\n"
+         "Tables: OUT/tables/*.txt and *.csv, OUT/results.json, OUT/report.html";
+}
+
+/// Several workers take jobs from one list; one thread at a time reports.
+class JobPool {
+ public:
+  using Work = std::function<void(const BenchJob&)>;
+
+  JobPool(const std::vector<BenchJob>& jobs, int workers, const Work& work) {
+    const auto worker = [&] {
+      for (std::size_t i = next_++; i < jobs.size(); i = next_++) {
+        try {
+          work(jobs[i]);
+        } catch (...) {
+          const std::lock_guard<std::mutex> lock(mutex_);
+          if (!failure_) failure_ = std::current_exception();
+          next_ = jobs.size();
+        }
+      }
+    };
+    std::vector<std::thread> threads;
+    for (int i = 0; i < workers; ++i) threads.emplace_back(worker);
+    for (std::thread& thread : threads) thread.join();
+    if (failure_) std::rethrow_exception(failure_);
+  }
+
+ private:
+  std::atomic<std::size_t> next_{0};
+  std::mutex mutex_;
+  std::exception_ptr failure_;
+};
+
+class LintelBench {
+ public:
+  LintelBench(std::ostream& out, std::ostream& err) : out_(out), err_(err) {
+    workers_ = static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
+    addOptions();
+  }
+
+  int run(int argc, const char* const* argv) {
+    if (const auto exit_code = parseArguments(app_, argc, argv, out_, err_)) return *exit_code;
+    checkUsage();
+    out_folder_ = fs::absolute(output_ + "/.").lexically_normal().parent_path();
+    suite_ = readSuite(suite_file_, recordings_);
+    warnOfAbsent();
+    jobs_ = jobsOf(suite_, out_folder_);
+    if (jobs_.empty()) throw SuiteError(suite_file_ + ": none of its recordings was found; name their folder with --recordings");
+    if (print_jobs_) return printJobs();
+    if (!job_.empty()) return runOne();
+    if (!collect_) runMissing();
+    return collect();
+  }
+
+ private:
+  void addOptions() {
+    app_.footer(examples());
+    app_.add_option("suite", suite_file_, "What to run: recordings and configurations")->type_name("SUITE.yaml")->required();
+    app_.add_option("-o,--output", output_, "Folder of results; what is there is not run again")->type_name("OUT")->required();
+    app_.add_option("--recordings", recordings_, "Folder in which recordings are looked for by name")
+        ->type_name("DIR")
+        ->capture_default_str();
+    app_.add_option("-j,--jobs", workers_, "Runs at the same time")->check(CLI::PositiveNumber)->capture_default_str();
+    app_.add_option("--threads", vio_threads_, "Threads of each run; results do not depend on it")
+        ->check(CLI::PositiveNumber)
+        ->capture_default_str();
+    app_.add_flag("--print-jobs", print_jobs_, "Print what is missing, a shell command a run, and stop");
+    app_.add_flag("--collect", collect_, "Run nothing; make the tables of what is there");
+    app_.add_option("--job", job_, "Run only this one (as --print-jobs prints them)")->type_name("ID");
+    app_.add_flag("--retry-failed", retry_failed_, "Run again what failed");
+    app_.add_option("--programs", programs_, "Folder of lintel-vio and the others; without it that of this program")
+        ->type_name("DIR");
+    app_.add_flag("-q,--quiet", quiet_, "No progress, no tables on the terminal");
+  }
+
+  void checkUsage() {
+    if (print_jobs_ + collect_ + !job_.empty() > 1) throw UsageError("--print-jobs, --collect and --job exclude each other");
+    std::error_code error;
+    const fs::path self = fs::read_symlink("/proc/self/exe", error);
+    if (programs_.empty()) programs_ = self.parent_path().string();
+    if (!fs::is_directory(recordings_)) throw UsageError("--recordings " + recordings_ + ": no such folder");
+  }
+
+  void warnOfAbsent() const {
+    if (quiet_ || print_jobs_ || !job_.empty()) return;
+    for (const BenchRecording& recording : suite_.recordings)
+      if (recording.absent())
+        err_ << kName << ": warning: recording " << recording.name << " was not found; name the folder that holds it with --recordings\n";
+  }
+
+  int printJobs() const {
+    std::vector<std::string> words{(fs::path(programs_) / kName).string(), fs::absolute(suite_file_).lexically_normal().string(),
+                                   "-o", out_folder_.string(), "--recordings",
+                                   fs::absolute(recordings_).lexically_normal().string(), "--quiet"};
+    if (vio_threads_ != 1) words.insert(words.end(), {"--threads", std::to_string(vio_threads_)});
+    if (retry_failed_) words.emplace_back("--retry-failed");
+    for (const BenchJob& job : jobs_) {
+      if (isDone(job, retry_failed_)) continue;
+      out_ << shellLine(words) << " --job " << shellLine({job.id}) << "\n";
+    }
+    return 0;
+  }
+
+  int runOne() const {
+    const auto job = std::find_if(jobs_.begin(), jobs_.end(), [&](const BenchJob& j) { return j.id == job_; });
+    if (job == jobs_.end()) throw UsageError("--job " + job_ + ": the suite has no such run; --print-jobs prints them");
+    const JobOutcome outcome = BenchRunner(suite_, out_folder_, programs_, vio_threads_).run(*job, retry_failed_);
+    if (!quiet_) out_ << job->id << ": " << outcome.text << "\n";
+    // a failed run is a result: it stands in the tables, and must not end a chain of jobs
+    if (outcome.failed) err_ << kName << ": warning: " << job->id << " failed: " << outcome.text << "\n";
+    return 0;
+  }
+
+  void runMissing() {
+    std::vector<BenchJob> missing;
+    for (const BenchJob& job : jobs_)
+      if (!isDone(job, retry_failed_)) missing.push_back(job);
+    fs::create_directories(out_folder_);
+    const BenchRunner runner(suite_, out_folder_, programs_, vio_threads_);
+    Progress progress(err_, progressStyleFor(err_, quiet_), "running", "runs", jobs_.size());
+    std::mutex mutex;
+    std::size_t done = jobs_.size() - missing.size();
+    JobPool(missing, workers_, [&](const BenchJob& job) {
+      const auto start = std::chrono::steady_clock::now();
+      const JobOutcome outcome = runner.run(job, retry_failed_);
+      const double wall_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+      const std::lock_guard<std::mutex> lock(mutex);
+      ++done;
+      if (!quiet_) {
+        progress.clear();
+        err_ << done << "/" << jobs_.size() << " " << job.id << ": " << (outcome.failed ? "FAILED: " : "") << outcome.text
+             << " (" << durationText(wall_s) << ")\n";
+      }
+      progress.update(done);
+    });
+  }
+
+  int collect() {
+    const BenchResults results(suite_, jobs_);
+    if (results.missing() == results.runs().size())
+      throw std::runtime_error(out_folder_.string() + ": holds no results of this suite; run it first");
+    fs::create_directories(out_folder_ / "tables");
+    for (const Table& table : benchTables(suite_, results)) {
+      AtomicFile::writeWhole((out_folder_ / "tables" / (table.name + ".txt")).string(), textOf(table));
+      AtomicFile::writeWhole((out_folder_ / "tables" / (table.name + ".csv")).string(), csvOf(table));
+      const bool shown = table.name.rfind("accuracy", 0) == 0 || table.name == "faults";
+      if (!quiet_ && shown && !table.rows.empty()) out_ << textOf(table) << "\n";
+    }
+    AtomicFile::writeWhole((out_folder_ / "results.json").string(), benchJson(suite_, results).dump(2) + "\n");
+    AtomicFile::writeWhole((out_folder_ / "report.html").string(), benchPage(suite_, results));
+    if (!quiet_) out_ << "written: " << (out_folder_ / "report.html").string() << ", results.json, tables/*.txt, tables/*.csv\n";
+    std::size_t failed = 0;
+    for (const auto& [job, run] : results.runs()) failed += run.found && !run.fault.empty();
+    if (failed > 0)
+      throw std::runtime_error(std::to_string(failed) + " of " + std::to_string(jobs_.size()) +
+                               " runs failed; why is in " + (out_folder_ / "tables/faults.txt").string() +
+                               " (run again with --retry-failed)");
+    return 0;
+  }
+
+  std::ostream& out_;
+  std::ostream& err_;
+  CLI::App app_{"Recordings × configurations: tables of accuracy, tracking, maps and timing.", kName};
+  std::string suite_file_, output_, recordings_ = ".", job_, programs_;
+  int workers_ = 1, vio_threads_ = 1;
+  bool print_jobs_ = false, collect_ = false, retry_failed_ = false, quiet_ = false;
+  fs::path out_folder_;
+  BenchSuite suite_;
+  std::vector<BenchJob> jobs_;
+};
+
+}  // namespace
+
+int runLintelBench(int argc, const char* const* argv, std::ostream& out, std::ostream& err) {
+  return programMain(kName, err, [&] { return LintelBench(out, err).run(argc, argv); });
+}
+
+}  // namespace lintel
