@@ -159,8 +159,8 @@ Table trackingTable(const BenchSuite& suite, const BenchResults& results) {
                       {"median life of a point [frames]", statsFigure("/tracking/points/median_length", 0)},
                       {"points used", statsFigure("/mean_points_used", 1)},
                       {"lines tracked", statsFigure("/mean_lines_tracked", 1)},
-                      {"lines used", statsFigure("/mean_lines_used", 1)},
-                      {"of them degenerate", statsFigure("/mean_lines_degenerate", 1)}});
+                      {"well determined", statsFigure("/mean_lines_used", 1)},
+                      {"degenerate", statsFigure("/mean_lines_degenerate", 1)}});
 }
 
 Table relativeTable(const BenchSuite& suite, const BenchResults& results) {

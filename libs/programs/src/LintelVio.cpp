@@ -8,7 +8,9 @@
 #include <chrono>
 #include <cstdio>
 #include <filesystem>
+#include <fstream>
 #include <iomanip>
+#include <iterator>
 #include <ostream>
 #include <stdexcept>
 
@@ -16,10 +18,12 @@
 #include "Odometry.h"
 #include "ProgramMain.h"
 #include "Progress.h"
+#include "RunReport.h"
 #include "VioOutput.h"
 #include "lintel/exporting/MapExport.h"
 #include "lintel/mapping/AtomicFile.h"
 #include "lintel/mapping/MapFile.h"
+#include "lintel/sensing/GroundTruth.h"
 #include "lintel/tracking/TrackDrawing.h"
 
 namespace lintel {
@@ -125,10 +129,12 @@ class LintelVio {
 
   OdometryResult process(Recording& recording, const Configuration& configuration) {
     Progress progress(err_, progressStyleFor(err_, quiet_), "processing", "frames", recording.expectedFrames());
-    const Rig rig = recording.rig();
+    calibration_ = recording.rig();
+    const Rig& rig = calibration_;
     return runOdometry(recording, configuration, threads_,
-                       [&](const Frame& frame, const FrameTracks& tracks, const WindowUpdate&, std::size_t done) {
+                       [&](const Frame& frame, const FrameTracks& tracks, const WindowUpdate& update, std::size_t done) {
                          progress.update(done);
+                         series_.add(tracks, update);
                          if (draw_tracks_.empty()) return;
                          char name[32];
                          std::snprintf(name, sizeof name, "%06zu.png", done - 1);
@@ -147,6 +153,23 @@ class LintelVio {
     for (const std::string& extension : exports_)
       exported_.push_back(exportMap(map, (out / ("map." + extension)).string()).files.front());
     AtomicFile::writeWhole((out / "stats.json").string(), statisticsJson(result, wall_s, warnings));
+    AtomicFile::writeWhole((out / "report.html").string(), report(result, map.configuration, wall_s, warnings));
+  }
+
+  std::string report(const OdometryResult& result, const std::string& configuration, double wall_s,
+                     const std::vector<std::string>& warnings) const {
+    RunRecord record{input_, configuration, writeConfiguration({}), calibration_, wall_s, warnings, {}, "", ""};
+    try {
+      record.groundtruth = readGroundTruth(input_);
+    } catch (const std::exception& error) {  // the run is good without it
+      record.truth_fault = error.what();
+    }
+    const auto picture = std::find(exports_.begin(), exports_.end(), "png");
+    if (picture != exports_.end()) {
+      std::ifstream file(fs::path(output_) / "map.png", std::ios::binary);
+      record.map_picture.assign(std::istreambuf_iterator<char>(file), {});
+    }
+    return runReport(record, result, series_);
   }
 
   void summarise(const OdometryResult& result, double wall_s) {
@@ -164,7 +187,7 @@ class LintelVio {
     out_ << "map: " << result.map.lines.size() << " lines, " << result.map.points.size() << " points, "
          << result.map.keyframes.size() << " keyframes\n";
     const fs::path folder(output_);
-    out_ << "written: " << (folder / "trajectory.tum").string() << ", map.lintel, stats.json, config.yaml\n";
+    out_ << "written: " << (folder / "trajectory.tum").string() << ", map.lintel, stats.json, config.yaml, report.html\n";
     for (const std::string& file : exported_) {
       std::string hint = viewerHint(fs::path(file).extension().string().substr(1));
       if (const std::size_t place = hint.find("FILE"); place != std::string::npos) hint.replace(place, 4, file);
@@ -185,6 +208,8 @@ class LintelVio {
   std::string input_, output_, config_, draw_tracks_;
   std::vector<std::string> settings_, exports_{"glb", "obj", "ply", "3Dscene", "png"}, exported_;
   RecordingParams recording_params_;
+  RunSeries series_;
+  Rig calibration_;
   int threads_ = 2;
   bool overwrite_ = false, quiet_ = false, dump_config_ = false;
 };

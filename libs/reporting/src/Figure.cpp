@@ -101,7 +101,7 @@ std::string settingsOf(const Figure& figure) {
   if (!figure.title.empty()) s += "set title " + quoted(figure.title) + "\n";
   s += "set xlabel " + quoted(figure.x_label) + "\nset ylabel " + quoted(figure.y_label) + "\n";
   s += figure.equal_axes ? "" : "set autoscale xfix\n";
-  if (figure.equal_axes) s += "set size ratio -1\n";
+  if (figure.equal_axes) s += "set size ratio -1\nset xtics rotate by 45 right\n";
   if (figure.log_y) s += "set logscale y\nset format y \"%g\"\n";
   if (figure.from_zero) s += "set yrange [0:*]\n";
   if (!figure.x_names.empty()) {

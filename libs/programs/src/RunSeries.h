@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "lintel/estimator/WindowUpdate.h"
+#include "lintel/tracking/FrameTracks.h"
+
+namespace lintel {
+
+/// What the report of a run shows of one frame.
+struct RunFrame {
+  std::int64_t t_ns = 0;
+  int points_tracked = 0, lines_tracked = 0;  ///< in the image
+  bool in_window = false;                     ///< the figures below are there
+  int points_used = 0, lines_used = 0, lines_degenerate = 0;
+  double speed_m_s = 0;
+  bool at_rest = false, lost = false;
+  ImuBias bias;
+};
+
+/// Collects a run frame by frame: about 150 bytes each.
+class RunSeries {
+ public:
+  void add(const FrameTracks& tracks, const WindowUpdate& update) {
+    RunFrame frame;
+    frame.t_ns = update.t_ns;
+    frame.points_tracked = static_cast<int>(tracks.points.size());
+    frame.lines_tracked = static_cast<int>(tracks.lines.size());
+    frame.in_window = update.status == EstimatorStatus::kTracking;
+    frame.lost = update.status == EstimatorStatus::kLost;
+    frame.points_used = update.points_used;
+    frame.lines_used = update.lines_used;
+    frame.lines_degenerate = update.lines_degenerate;
+    frame.speed_m_s = update.v_w_b.norm();
+    frame.at_rest = update.at_rest;
+    frame.bias = update.bias;
+    frames_.push_back(frame);
+  }
+  const std::vector<RunFrame>& frames() const { return frames_; }
+
+ private:
+  std::vector<RunFrame> frames_;
+};
+
+}  // namespace lintel
