@@ -10,7 +10,10 @@
 #include "lintel/tracking/FrontEnd.h"
 
 int main(int argc, char** argv) try {
-  if (argc != 3) return std::fprintf(stderr, "usage: odometry RECORDING MAP.EXT\n"), 2;
+  if (argc != 3) {
+    std::fprintf(stderr, "usage: odometry RECORDING MAP.EXT\n");
+    return 2;
+  }
   const auto recording = lintel::openRecording(argv[1]);  // an EuRoC folder or a rawlog
   lintel::FrontEnd front_end(recording->rig(), lintel::FrontEndParams{});
   lintel::Estimator estimator(recording->rig(), lintel::EstimatorParams{});
@@ -25,7 +28,9 @@ int main(int argc, char** argv) try {
     std::printf("%lld %.6f %.6f %.6f\n", static_cast<long long>(update.t_ns), p_w_b.x(), p_w_b.y(), p_w_b.z());
   }
   map.add(estimator.finish());
-  exportMap(map.build(), argv[2]);
+  lintel::exportMap(map.build(), argv[2]);
+  return 0;
 } catch (const std::exception& error) {
-  return std::fprintf(stderr, "odometry: %s\n", error.what()), 1;
+  std::fprintf(stderr, "odometry: %s\n", error.what());
+  return 1;
 }
