@@ -129,9 +129,11 @@ class SceneBuilder {
   }
 
   void addLines(aiNode& root) {
-    aiNode* lines = addNode("Lines", root);
+    aiNode* lines = nullptr;  // a node without anything is not good style in glTF
     for (const DrawnPart& part : drawing_.parts) {
-      if (part.layer == MapLayer::kLines) addPart(part, "Lines " + part.name, *lines);
+      if (part.layer != MapLayer::kLines) continue;
+      if (!lines) lines = addNode("Lines", root);
+      addPart(part, "Lines " + part.name, *lines);
     }
   }
 

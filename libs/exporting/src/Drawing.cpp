@@ -58,11 +58,22 @@ void addLines(const ExportParams& params, Drawing& drawing) {
   }
 }
 
-void addPoints(const ExportParams& params, Drawing& drawing) {
+/// Where points are drawn: around the lines. Viewers fit all that is there into their window, and a few points at the
+/// horizon would shrink the lines to a dot.
+Eigen::AlignedBox3d roomForPoints(const Drawing& drawing) {
+  const Eigen::Vector3d margin = Eigen::Vector3d::Constant(0.5 * drawing.core.diagonal().norm());
+  return {drawing.core.min() - margin, drawing.core.max() + margin};
+}
+
+void addPoints(const ExportParams& params, bool far_points, Drawing& drawing) {
   DrawnPart part{"Points", MapLayer::kPoints, -1, {}, {}};
+  const bool all = far_points || drawing.lines.empty();
+  const Eigen::AlignedBox3d room = roomForPoints(drawing);
   for (const MapPoint& point : drawing.map->points) {
     if (!drawable(point.p_w)) {
       ++drawing.summary.dropped;
+    } else if (wanted(point, params) && !all && !room.contains(point.p_w)) {
+      ++drawing.summary.far_points;
     } else if (wanted(point, params)) {
       part.points.push_back({point.p_w, kPointColour, &point});
     }
@@ -124,6 +135,29 @@ Eigen::AlignedBox3d coreOf(const Drawing& drawing) {
   return box;
 }
 
+/// Of tubes: to be seen beside the core of the map, and not lost in a view of everything that is drawn.
+double defaultRadius(const Drawing& drawing) {
+  const double core_m = std::max(drawing.core.diagonal().norm(), 1e-3);
+  Eigen::AlignedBox3d whole = drawing.core;
+  for (const MapLine* line : drawing.lines) whole.extend(line->segment_w.start).extend(line->segment_w.end);
+  const double radius_m = std::clamp(0.001 * whole.diagonal().norm(), 0.0015 * core_m, 0.004 * core_m);
+  return std::clamp(radius_m, 1e-5, 0.05);
+}
+
+/// Of keyframes: to be seen beside the map, but where keyframes stand close together no larger than their distance, so
+/// that they do not hide everything.
+double frustumDepth(const Drawing& drawing) {
+  const double extent_m = std::max(drawing.core.diagonal().norm(), 1e-3);
+  std::vector<double> gaps_m;
+  const auto& keyframes = drawing.map->keyframes;
+  for (std::size_t i = 1; i < keyframes.size(); ++i) {
+    const double gap_m = (keyframes[i].T_w_b.p - keyframes[i - 1].T_w_b.p).norm();
+    if (std::isfinite(gap_m)) gaps_m.push_back(gap_m);
+  }
+  const double widest_m = std::clamp(0.02 * extent_m, 1e-4, 0.3);
+  return gaps_m.empty() ? widest_m : std::clamp(quantile(gaps_m, 0.5), 0.3 * widest_m, widest_m);
+}
+
 }  // namespace
 
 std::vector<DrawnSegment> frustumSegments(const Rig& rig, const Pose& T_w_b, double depth_m, Rgb colour) {
@@ -147,7 +181,7 @@ std::vector<DrawnSegment> frustumSegments(const Rig& rig, const Pose& T_w_b, dou
   return strokes;
 }
 
-Drawing makeDrawing(const LineMap& map, const ExportParams& params) {
+Drawing makeDrawing(const LineMap& map, const ExportParams& params, bool far_points) {
   Drawing drawing;
   drawing.map = &map;
   drawing.style = *params.style;
@@ -155,11 +189,10 @@ Drawing makeDrawing(const LineMap& map, const ExportParams& params) {
   const auto& layers = *params.layers;
   if (layers.count(MapLayer::kLines)) selectLines(map, params, drawing);
   drawing.core = coreOf(drawing);
-  const double extent_m = std::max(drawing.core.diagonal().norm(), 1e-3);
-  drawing.radius_m = params.radius_m > 0 ? params.radius_m : std::clamp(0.0015 * extent_m, 1e-5, 0.05);
-  drawing.frustum_m = std::clamp(0.02 * extent_m, 1e-4, 0.3);
+  drawing.radius_m = params.radius_m > 0 ? params.radius_m : defaultRadius(drawing);
+  drawing.frustum_m = frustumDepth(drawing);
   addLines(params, drawing);
-  if (layers.count(MapLayer::kPoints)) addPoints(params, drawing);
+  if (layers.count(MapLayer::kPoints)) addPoints(params, far_points, drawing);
   if (layers.count(MapLayer::kKeyframes)) addKeyframes(drawing);
   if (layers.count(MapLayer::kTrajectory)) addTrajectory(drawing);
   return drawing;

@@ -52,7 +52,7 @@ struct Drawing {
 constexpr std::size_t kFrustumStrokes = 8;
 std::vector<DrawnSegment> frustumSegments(const Rig& rig, const Pose& T_w_b, double depth_m, Rgb colour);
 
-/// `params` must have style and layers set.
-Drawing makeDrawing(const LineMap& map, const ExportParams& params);
+/// `params` must have style and layers set. Without `far_points` those far from the lines are left out and counted.
+Drawing makeDrawing(const LineMap& map, const ExportParams& params, bool far_points);
 
 }  // namespace lintel

@@ -77,6 +77,14 @@ Json lineData(const DrawnPart& part) {
           {"constrained", constrained}};
 }
 
+/// What is known of each keyframe, by column. Times are text: they do not fit a reader's double.
+Json keyframeData(const Drawing& drawing) {
+  Json ids = Json::array(), times = Json::array();
+  for (const MapKeyframe* keyframe : drawing.keyframes)
+    ids.push_back(keyframe->id), times.push_back(std::to_string(keyframe->t_ns));
+  return {{"id", ids}, {"t_ns", times}, {"strokes_each", kFrustumStrokes}};
+}
+
 void addExtras(const Drawing& drawing, Json& json) {
   json["asset"]["generator"] = "Lintel";
   json["asset"]["extras"] = {{"source", drawing.map->source},
@@ -89,6 +97,8 @@ void addExtras(const Drawing& drawing, Json& json) {
     for (const DrawnPart& part : drawing.parts) {
       if (part.layer == MapLayer::kLines && node.value("name", "") == "Lines " + part.name)
         node["extras"] = lineData(part);
+      if (part.layer == MapLayer::kKeyframes && node.value("name", "") == part.name)
+        node["extras"] = keyframeData(drawing);
     }
   }
 }

@@ -26,27 +26,28 @@ struct Format {
   OutputFiles (*write)(const Drawing&, const std::string&);
   LineStyle style;
   Layers layers;
+  bool data;  // for programs rather than for the eye: nothing is left out
   const char* viewer;
 };
 
 const std::vector<Format>& formats() {
   static const std::vector<Format> all{
-      {"glb", glbFiles, LineStyle::kLines, kAll,
-       "f3d --point-size=2 FILE, Blender (import glTF 2.0) or a browser's glTF viewer"},
-      {"gltf", gltfFiles, LineStyle::kLines, kAll,
-       "f3d --point-size=2 FILE, Blender (import glTF 2.0) or a browser's glTF viewer"},
-      {"obj", objFiles, LineStyle::kTubes, kOnlyLines, "meshlab FILE or Blender (import Wavefront)"},
-      {"ply", plyFiles, LineStyle::kTubes, kOnlyLines, "meshlab FILE or CloudCompare"},
-      {"3Dscene", sceneFiles, LineStyle::kLines, kAll, "SceneViewer3D FILE"},
-      {"simplemap", simplemapFiles, LineStyle::kLines, kNoTrajectory,
+      {"glb", glbFiles, LineStyle::kLines, kAll, false,
+       "f3d --point-size=2 --line-width=2 FILE or a browser's glTF viewer"},
+      {"gltf", gltfFiles, LineStyle::kLines, kAll, false,
+       "f3d --point-size=2 --line-width=2 FILE or a browser's glTF viewer"},
+      {"obj", objFiles, LineStyle::kTubes, kOnlyLines, false, "meshlab FILE or Blender (import Wavefront)"},
+      {"ply", plyFiles, LineStyle::kTubes, kOnlyLines, false, "meshlab FILE or CloudCompare"},
+      {"3Dscene", sceneFiles, LineStyle::kLines, kAll, false, "SceneViewer3D FILE"},
+      {"simplemap", simplemapFiles, LineStyle::kLines, kNoTrajectory, true,
        "MRPT's and MOLA's tools for view-based maps, e.g. observations2map"},
-      {"dae", daeFiles, LineStyle::kLines, kNoPoints, "a Collada reader, e.g. f3d FILE"},
-      {"x3d", x3dFiles, LineStyle::kLines, kNoPoints, "an X3D viewer or Blender (import X3D)"},
-      {"csv", csvFiles, LineStyle::kLines, kOnlyLines, "any table program"},
-      {"json", jsonFiles, LineStyle::kLines, kAll, "any program that reads JSON"},
-      {"dxf", dxfFiles, LineStyle::kLines, kNoPoints, "LibreCAD, FreeCAD, AutoCAD or CloudCompare"},
-      {"png", pngFiles, LineStyle::kLines, kNoPoints, "any picture viewer"},
-      {"html", htmlFiles, LineStyle::kLines, kAll, "any browser; it needs no network"},
+      {"dae", daeFiles, LineStyle::kLines, kNoPoints, false, "a Collada reader, e.g. f3d FILE"},
+      {"x3d", x3dFiles, LineStyle::kLines, kNoPoints, false, "an X3D viewer or Blender (import X3D)"},
+      {"csv", csvFiles, LineStyle::kLines, kOnlyLines, true, "any table program"},
+      {"json", jsonFiles, LineStyle::kLines, kAll, true, "any program that reads JSON"},
+      {"dxf", dxfFiles, LineStyle::kLines, kNoPoints, true, "LibreCAD, FreeCAD, AutoCAD or CloudCompare"},
+      {"png", pngFiles, LineStyle::kLines, kNoPoints, false, "any picture viewer"},
+      {"html", htmlFiles, LineStyle::kLines, kAll, false, "any browser; it needs no network"},
   };
   return all;
 }
@@ -115,7 +116,7 @@ ExportSummary exportMap(const LineMap& map, const std::string& path, const Expor
   ExportParams complete = params;
   if (!complete.style) complete.style = format->style;
   if (!complete.layers) complete.layers = format->layers;
-  const Drawing drawing = makeDrawing(map, complete);
+  const Drawing drawing = makeDrawing(map, complete, format->data);
   const OutputFiles files = format->write(drawing, path);
   writeAll(files);
   ExportSummary summary = drawing.summary;

@@ -71,9 +71,10 @@ void lookAtMap(const Drawing& drawing, COpenGLScene& scene) {
   auto& camera = scene.getViewport()->getCamera();
   const Eigen::Vector3f centre = drawing.core.center().cast<float>();
   camera.setPointingAt(centre.x(), centre.y(), centre.z());
-  camera.setZoomDistance(static_cast<float>(1.6 * std::max(drawing.core.diagonal().norm(), 1e-3)));
+  camera.setZoomDistance(static_cast<float>(1.3 * std::max(drawing.core.diagonal().norm(), 1e-3)));
   camera.setAzimuthDegrees(-60);
   camera.setElevationDegrees(35);
+  scene.enableFollowCamera(true);  // else SceneViewer3D keeps a camera of its own, 20 m from the origin
 }
 
 }  // namespace

@@ -235,6 +235,18 @@ TEST_F(MapExport, NotFiniteLinesAreDroppedAndCounted) {
   }
 }
 
+TEST_F(MapExport, PointsAtTheHorizonDoNotShrinkTheLinesInAViewer) {
+  LineMap map = kRoom;
+  map.points[7].p_w = {500, 0, 0};
+  const ExportSummary drawn = exportMap(map, in("map.glb"));
+  EXPECT_EQ(drawn.points, 299u);
+  EXPECT_EQ(drawn.far_points, 1u);
+  for (const Eigen::Vector3d& p : reimport(in("map.glb")).points) EXPECT_LT(p.norm(), 100);
+  EXPECT_EQ(exportMap(map, in("map.json")).points, 300u) << "data is whole";
+  map.lines.clear();
+  EXPECT_EQ(exportMap(map, in("map.glb")).points, 300u) << "without lines nothing is far from them";
+}
+
 TEST_F(MapExport, UnknownExtensionsAndParametersAreNamed) {
   EXPECT_THROW(exportMap(kRoom, in("map.stl")), ExportError);
   EXPECT_THROW(exportMap(kRoom, in("map")), ExportError);

@@ -125,6 +125,7 @@ class LintelMap {
     const std::string& file = summary.files.front();
     out_ << file << ": " << summary.lines << " lines";
     if (summary.points > 0) out_ << ", " << summary.points << " points";
+    if (summary.far_points > 0) out_ << " (and " << summary.far_points << " far off that are not drawn)";
     if (summary.keyframes > 0) out_ << ", " << summary.keyframes << " keyframes";
     if (summary.trajectory > 0) out_ << ", " << summary.trajectory << " poses";
     if (summary.filtered > 0) out_ << "; " << summary.filtered << " lines left out by the filters";

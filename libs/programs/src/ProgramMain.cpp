@@ -5,6 +5,7 @@
 #include <CLI/Config.hpp>
 #include <CLI/Formatter.hpp>
 #include <algorithm>
+#include <csignal>
 #include <new>
 #include <ostream>
 
@@ -21,6 +22,7 @@ std::string oneLine(std::string text) {
 }  // namespace
 
 int programMain(const std::string& name, std::ostream& err, const std::function<int()>& body) {
+  std::signal(SIGXFSZ, SIG_IGN);  // a file over the user's limit is an error of writing, not a sudden end
   try {
     return body();
   } catch (const UsageError& error) {

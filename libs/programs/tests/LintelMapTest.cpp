@@ -3,6 +3,7 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <sys/resource.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -56,7 +57,7 @@ TEST_F(LintelMapTest, WritesTheFormThatTheExtensionNames) {
   EXPECT_EQ(run({in("map.lintel"), "-o", in("map.glb"), "-o", in("map.ply")}), 0);
   EXPECT_TRUE(exists("map.glb") && exists("map.ply"));
   EXPECT_THAT(out_.str(), HasSubstr("map.glb: 3 lines"));
-  EXPECT_THAT(out_.str(), HasSubstr("f3d --point-size=2 " + in("map.glb")));
+  EXPECT_THAT(out_.str(), HasSubstr("f3d --point-size=2 --line-width=2 " + in("map.glb")));
   EXPECT_EQ(err_.str(), "");
 }
 
@@ -89,6 +90,19 @@ TEST_F(LintelMapTest, BadFilesAreOneWithOneLine) {
   EXPECT_EQ(run({in("map.lintel"), "-o", in("full.ply")}), 1);
   const std::string text = err_.str();
   EXPECT_EQ(std::count(text.begin(), text.end(), '\n'), 1) << text;
+}
+
+TEST_F(LintelMapTest, ALimitOfFileSizeIsAnErrorAndLeavesNothing) {
+  rlimit before{};
+  getrlimit(RLIMIT_FSIZE, &before);
+  rlimit small = before;
+  small.rlim_cur = 64;
+  setrlimit(RLIMIT_FSIZE, &small);
+  const int exit_code = run({in("map.lintel"), "-o", in("map.glb")});
+  setrlimit(RLIMIT_FSIZE, &before);
+  EXPECT_EQ(exit_code, 1);
+  EXPECT_THAT(err_.str(), HasSubstr("map.glb"));
+  EXPECT_EQ(std::distance(std::filesystem::directory_iterator(folder_), std::filesystem::directory_iterator()), 1);
 }
 
 TEST_F(LintelMapTest, HelpHasExamples) {

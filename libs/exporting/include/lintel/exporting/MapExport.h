@@ -39,6 +39,7 @@ struct ExportSummary {
   std::size_t lines = 0, points = 0, keyframes = 0, trajectory = 0;
   std::size_t filtered = 0;        ///< lines left out by min_observations, min_length_m, max_sigma_m
   std::size_t dropped = 0;         ///< lines, points, poses left out as they are not finite or too short to be drawn
+  std::size_t far_points = 0;      ///< points left out of a drawing as they are far from all lines
   std::vector<std::string> files;  ///< written; the first is the one to open
 };
 
