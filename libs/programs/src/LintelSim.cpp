@@ -38,6 +38,8 @@ class LintelSim {
       params_.imu.noise = params_.imu.biases = false;
       params_.camera.noise = 0;
     }
+    params_.imu.initial_gyro_bias *= imu_bias_;
+    params_.imu.initial_accel_bias *= imu_bias_;
     const Simulation simulation(params_);
     const SimulationSummary summary = write(simulation, folder);
     if (!quiet_) print(summary, folder);
@@ -95,6 +97,8 @@ class LintelSim {
     };
     number("--image-noise", camera.noise, "Image noise; 1 = about one grey level");
     number("--imu-noise", params_.imu.noise_scale, "IMU noise; 1 = EuRoC's");
+    number("--imu-bias", imu_bias_, "IMU biases at the start; 1 = as EuRoC's");
+    number("--bias-walk", params_.imu.walk_scale, "How fast the IMU biases roll away; 1 = EuRoC's");
     number("--blur", camera.exposure_time_s, "Exposure time: motion blur [s]");
     number("--exposure-change", camera.exposure_change, "Changes of the exposure (deviation of its logarithm)");
     number("--vignetting", camera.vignetting, "Darkening in the corners")->check(CLI::Range(0.0, 1.0));
@@ -146,6 +150,7 @@ class LintelSim {
   CLI::App app_{"Makes a simulated recording: images, IMU, and everything true about them.", kName};
   std::string folder_;
   SimulationParams params_;
+  double imu_bias_ = 1;
   bool noise_free_ = false, overwrite_ = false, quiet_ = false;
 };
 

@@ -12,6 +12,7 @@ namespace {
 
 constexpr int kGaussians = 1 << 16;  // drawn once: a picture takes a quarter of a million
 constexpr int kMostExposures = 12;
+constexpr double kExposureStep_px = 1.5;  // of motion from one to the next: less than two pixels leave no steps
 
 /// Grey level of a radiance: linear in the dark, saturating softly as an automatic exposure would leave it.
 float greyOf(float radiance) { return 255.0f * (1.0f - std::exp(-2.8f * radiance)); }
@@ -46,14 +47,16 @@ double CameraSensor::gain(double t_s) const {
 Radiance CameraSensor::expose(const Trajectory& trajectory, double t_s) const {
   const auto poseAt = [&](double t) { return trajectory.at(t).T_w_b * T_b_c_; };
   if (params_.exposure_time_s <= 0) return renderer_.render(poseAt(t_s));
-  // as many as there are pixels of motion, judged by rotation and by translation at 2 m
+  // the motion in steps, judged by rotation and by translation at 2 m
   const KinematicState state = trajectory.at(t_s);
   const double motion_px =
       (state.omega_b.norm() + 0.5 * state.v_w_b.norm()) * params_.exposure_time_s * camera_.meanFocal();
-  const int count = std::clamp(static_cast<int>(std::ceil(motion_px)), 1, kMostExposures);
+  const int count = std::clamp(static_cast<int>(std::ceil(motion_px / kExposureStep_px)), 1, kMostExposures);
   Radiance sum;
   for (int i = 0; i < count; ++i) {
-    const Radiance part = renderer_.render(poseAt(t_s + params_.exposure_time_s * ((i + 0.5) / count - 0.5)));
+    // two exposures share the rays of one: their grids complement each other
+    const EdgeSampling edges = count == 1 ? EdgeSampling{} : i % 2 == 0 ? EdgeSampling{4, 2} : EdgeSampling{2, 4};
+    const Radiance part = renderer_.render(poseAt(t_s + params_.exposure_time_s * ((i + 0.5) / count - 0.5)), edges);
     if (sum.empty()) sum.assign(part.size(), 0.0f);
     for (std::size_t k = 0; k < part.size(); ++k) sum[k] += part[k] / static_cast<float>(count);
   }

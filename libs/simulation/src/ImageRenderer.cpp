@@ -16,7 +16,6 @@ namespace lintel {
 
 namespace {
 
-constexpr int kSubRows = 4;  // sub-pixel grid where surfaces meet
 constexpr float kBackground = 0.02f;
 
 /// What shading needs of a patch, in floats.
@@ -42,7 +41,7 @@ class ImageRenderer::Impl {
     }
   }
 
-  Radiance render(const Pose& T_w_c) const {
+  Radiance render(const Pose& T_w_c, const EdgeSampling& edges) const {
     const int width = pixels_.width(), height = pixels_.height();
     const View view{T_w_c.p.cast<float>(), T_w_c.R().cast<float>()};
     Radiance image(static_cast<std::size_t>(width) * height);
@@ -50,7 +49,7 @@ class ImageRenderer::Impl {
     for (int y = 0; y < height; ++y) castRow(view, y, image, patch_of);
     for (int y = 0; y < height; ++y) {
       for (int x = 0; x < width; ++x) {
-        if (surfacesMeet(patch_of, x, y)) image[static_cast<std::size_t>(y) * width + x] = supersample(view, x, y);
+        if (surfacesMeet(patch_of, x, y)) image[static_cast<std::size_t>(y) * width + x] = supersample(view, x, y, edges);
       }
     }
     return image;
@@ -113,24 +112,26 @@ class ImageRenderer::Impl {
     return false;
   }
 
-  float supersample(const View& view, int x, int y) const {
-    constexpr int kPacket = RayCaster::kPacket, kSamples = kSubRows * kSubRows;
-    static_assert(kSamples % kPacket == 0, "whole packets");
+  float supersample(const View& view, int x, int y, const EdgeSampling& edges) const {
+    constexpr int kPacket = RayCaster::kPacket;
+    const int samples = edges.rows * edges.columns;
+    const float rows = static_cast<float>(edges.rows), columns = static_cast<float>(edges.columns);
+    const float angle_rad = pixels_.angle() / std::sqrt(rows * columns);
     RayCaster::Packet packet;
     std::array<Eigen::Vector3f, kPacket> directions;
     std::array<RayHit, kPacket> hits;
     float sum = 0;
-    for (int first = 0; first < kSamples; first += kPacket) {
+    for (int first = 0; first < samples; first += kPacket) {
       for (int i = 0; i < kPacket; ++i) {
-        const int row = (first + i) / kSubRows, column = (first + i) % kSubRows;
-        const float dx = (column + 0.5f) / kSubRows - 0.5f, dy = (row + 0.5f) / kSubRows - 0.5f;
+        const int row = (first + i) / edges.columns, column = (first + i) % edges.columns;
+        const float dx = (column + 0.5f) / columns - 0.5f, dy = (row + 0.5f) / rows - 0.5f;
         directions[i] = view.R_w_c * pixels_.direction(x, y, dx, dy);
         setDirection(packet, i, directions[i]);
       }
       rays_.cast(view.origin, packet, hits);
-      for (int i = 0; i < kPacket; ++i) sum += shade(hits[i], directions[i], pixels_.angle() / kSubRows);
+      for (int i = 0; i < kPacket; ++i) sum += shade(hits[i], directions[i], angle_rad);
     }
-    return sum / kSamples;
+    return sum / static_cast<float>(samples);
   }
 
   /// `angle_rad`: what one sample covers.
@@ -154,7 +155,9 @@ class ImageRenderer::Impl {
 ImageRenderer::ImageRenderer(const Scene& scene, const PinholeRadtan& camera)
     : impl_(std::make_unique<Impl>(scene, camera)) {}
 ImageRenderer::~ImageRenderer() = default;
-Radiance ImageRenderer::render(const Pose& T_w_c) const { return impl_->render(T_w_c); }
+Radiance ImageRenderer::render(const Pose& T_w_c, const EdgeSampling& edges) const {
+  return impl_->render(T_w_c, edges);
+}
 std::vector<bool> ImageRenderer::visibleLines(const Pose& T_w_c) const { return impl_->visibleLines(T_w_c); }
 
 }  // namespace lintel

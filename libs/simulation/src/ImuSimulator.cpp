@@ -33,10 +33,11 @@ SimulatedImu simulateImu(const Trajectory& trajectory, const Rig& rig, const Imu
   const double step_s = 1e-9 * static_cast<double>(step_ns), scale = params.noise ? params.noise_scale : 0;
   const double sigma_gyro = scale * rig.imu_noise.gyro_noise / std::sqrt(step_s);
   const double sigma_accel = scale * rig.imu_noise.accel_noise / std::sqrt(step_s);
-  const double walk_gyro = scale * rig.imu_noise.gyro_walk * std::sqrt(step_s);
-  const double walk_accel = scale * rig.imu_noise.accel_walk * std::sqrt(step_s);
+  const double walk = scale * params.walk_scale;
+  const double walk_gyro = walk * rig.imu_noise.gyro_walk * std::sqrt(step_s);
+  const double walk_accel = walk * rig.imu_noise.accel_walk * std::sqrt(step_s);
 
-  RandomStream start(params.seed, 0x62696173), white(params.seed, 0x696d75), walk(params.seed, 0x77616c6b);
+  RandomStream start(params.seed, 0x62696173), white(params.seed, 0x696d75), steps(params.seed, 0x77616c6b);
   InertialTruth truth;
   if (params.biases) {
     truth.bias_gyro = start.gaussian3(params.initial_gyro_bias);
@@ -52,8 +53,8 @@ SimulatedImu simulateImu(const Trajectory& trajectory, const Rig& rig, const Imu
     imu.truth.push_back(truth);
     imu.samples.push_back({truth.t_ns, truth.state.omega_b + truth.bias_gyro + white.gaussian3(sigma_gyro),
                            R_b_w * (truth.state.a_w_b - gravityW()) + truth.bias_accel + white.gaussian3(sigma_accel)});
-    truth.bias_gyro += walk.gaussian3(walk_gyro);
-    truth.bias_accel += walk.gaussian3(walk_accel);
+    truth.bias_gyro += steps.gaussian3(walk_gyro);
+    truth.bias_accel += steps.gaussian3(walk_accel);
   }
   return imu;
 }

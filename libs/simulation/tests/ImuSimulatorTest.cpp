@@ -82,6 +82,19 @@ TEST(ImuSimulator, NoiseAndWalkHaveTheRigsDensities) {
   EXPECT_GT(imu.truth[0].bias_accel.norm(), 1e-2);
 }
 
+TEST(ImuSimulator, BiasesRollAwayAsFastAsAskedFor) {
+  ImuSimulatorParams fast;
+  fast.walk_scale = 10;
+  const SimulatedImu usual = simulateImu(FigureTrajectory(), eurocRig(), {}, 2000);
+  const SimulatedImu rolling = simulateImu(FigureTrajectory(), eurocRig(), fast, 2000);
+  const auto drift = [](const SimulatedImu& imu) -> Eigen::Vector3d {
+    return imu.truth.back().bias_gyro - imu.truth.front().bias_gyro;
+  };
+  EXPECT_EQ(usual.truth[0].bias_gyro, rolling.truth[0].bias_gyro);
+  EXPECT_NEAR((drift(rolling) - 10 * drift(usual)).norm(), 0, 1e-12);
+  EXPECT_EQ(usual.samples[0].gyro, rolling.samples[0].gyro);
+}
+
 TEST(ImuSimulator, RatesThatDoNotFitAreRefused) {
   Rig rig = eurocRig();
   rig.imu_rate_hz = 210;
