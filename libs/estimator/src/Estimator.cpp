@@ -7,8 +7,10 @@
 #include "FailureDetection.h"
 #include "Initializer.h"
 #include "KeyframeSelection.h"
+#include "LineDegeneracy.h"
 #include "LineTriangulation.h"
 #include "OutlierRejection.h"
+#include "ParallelGroups.h"
 #include "ParamsCheck.h"
 #include "PointTriangulation.h"
 #include "WindowMarginalization.h"
@@ -192,6 +194,7 @@ void Estimator::Impl::track(WindowUpdate& update) {
 void Estimator::Impl::solve(WindowUpdate& update) {
   triangulatePoints(window_, params_.landmarks, params_.factors.point_sigma_px);
   triangulateLines(window_, params_);
+  if (params_.degeneracy.lines == "constrain") groupParallelLines(window_, params_);
   WindowFactors factors(window_, params_.factors);
   factors.addPriors();
   factors.addGauge();
@@ -199,11 +202,11 @@ void Estimator::Impl::solve(WindowUpdate& update) {
   factors.addImu();
   factors.addRest(params_.rest_velocity_sigma);
   factors.addPoints();
-  factors.addLines();
+  factors.addLines(params_.degeneracy);
   update.iterations = solveWindow(window_, factors.factors(), params_.calibration, params_.max_iterations).iterations;
   rejectOutliers(window_, params_.landmarks);
   for (auto& [id, track] : window_.lines)
-    if (track.triangulated && !track.degenerate) updateLineUncertainty(window_, params_, track);
+    if (entersProblem(track, params_.degeneracy)) updateLineUncertainty(window_, params_, track);
   for (auto& [id, track] : window_.points)
     if (track.triangulated) updatePointUncertainty(window_, params_.factors.point_sigma_px, track);
   for (std::size_t i = 1; i < window_.frames.size(); ++i) {
@@ -266,8 +269,12 @@ void Estimator::Impl::countLandmarks(WindowUpdate& update) const {
   for (const auto& [id, track] : window_.points) update.points_used += track.triangulated;
   for (const auto& [id, track] : window_.lines) {
     update.lines_tracked += !track.sightings.empty() && track.sightings.back().frame == newest;
-    update.lines_used += track.triangulated && !track.degenerate;
-    update.lines_degenerate += track.triangulated && track.degenerate;
+    update.lines_used += entersProblem(track, params_.degeneracy);
+    update.lines_constrained += entersProblem(track, params_.degeneracy) && track.group != 0;
+    update.lines_degenerate += track.triangulated && track.degenerate();
+    update.lines_through_epipole += track.verdict == LineVerdict::kThroughEpipole;
+    update.lines_direction_unknown += track.verdict == LineVerdict::kDirectionUnknown;
+    update.lines_distance_unknown += track.verdict == LineVerdict::kDistanceUnknown;
   }
 }
 

@@ -118,6 +118,40 @@ double lineariseOne(LandmarkBlock<Kind>& landmark, const std::vector<CameraView>
   return sum;
 }
 
+double costOf(const DirectionSighting& s, const std::vector<CameraView>& views, const double* correction,
+              const CameraLayout& layout) {
+  VanishingLinearisation l;
+  double weight;
+  s.factor->linearise(views[static_cast<std::size_t>(s.camera)], correction,
+                      layout.direction_blocks[static_cast<std::size_t>(s.direction)], false, l);
+  return robust(s.loss, l.residual * l.residual, weight);
+}
+
+double lineariseOne(const DirectionSighting& s, const std::vector<CameraView>& views, const double* correction,
+                    const CameraLayout& layout, CameraEquations& eq) {
+  const double* direction = layout.direction_blocks[static_cast<std::size_t>(s.direction)];
+  VanishingLinearisation l;
+  double weight;
+  s.factor->linearise(views[static_cast<std::size_t>(s.camera)], correction, direction, true, l);
+  const double cost = robust(s.loss, l.residual * l.residual, weight);
+  RowMajorMatrix plus(kDirectionSize, kDirectionTangent);
+  manifoldOf(BlockKey::kDirection)->PlusJacobian(direction, plus.data());
+  const Eigen::Matrix<double, 1, kDirectionTangent> Jd = l.d_direction * plus;
+  const Eigen::Index camera = layout.camera(s.camera), intrinsics = layout.intrinsics(), at = layout.direction(s.direction);
+  const auto& Jc = l.d_camera;
+  const auto& Ji = l.d_intrinsics;
+  eq.H.block<kCameraTangent, kCameraTangent>(camera, camera) += weight * Jc.transpose() * Jc;
+  eq.H.block<kIntrinsicsSize, kCameraTangent>(intrinsics, camera) += weight * Ji.transpose() * Jc;
+  eq.H.block<kIntrinsicsSize, kIntrinsicsSize>(intrinsics, intrinsics) += weight * Ji.transpose() * Ji;
+  eq.H.block<kDirectionTangent, kCameraTangent>(at, camera) += weight * Jd.transpose() * Jc;
+  eq.H.block<kDirectionTangent, kIntrinsicsSize>(at, intrinsics) += weight * Jd.transpose() * Ji;
+  eq.H.block<kDirectionTangent, kDirectionTangent>(at, at) += weight * Jd.transpose() * Jd;
+  eq.b.segment<kCameraTangent>(camera) += weight * l.residual * Jc.transpose();
+  eq.b.segment<kIntrinsicsSize>(intrinsics) += weight * l.residual * Ji.transpose();
+  eq.b.segment<kDirectionTangent>(at) += weight * l.residual * Jd.transpose();
+  return cost;
+}
+
 /// S with S S^T = H^-1; a pseudo-inverse where H has no information.
 template <int T>
 Eigen::Matrix<double, T, T> inverseRoot(Eigen::Matrix<double, T, T> H, double damping) {
@@ -182,10 +216,16 @@ double backSubstituteOne(LandmarkBlock<Kind>& landmark, const Eigen::VectorXd& c
 
 }  // namespace
 
-bool LandmarkSystem::isLandmark(const Factor& factor) {
+bool LandmarkSystem::isVision(const Factor& factor) {
   return std::any_of(factor.blocks.begin(), factor.blocks.end(), [](const BlockKey& key) {
-    return key.kind == BlockKey::kPoint || key.kind == BlockKey::kLine;
-  });
+    return key.kind == BlockKey::kPoint || key.kind == BlockKey::kLine || key.kind == BlockKey::kDirection;
+  }) && dynamic_cast<const PriorFactor*>(factor.cost) == nullptr;
+}
+
+int LandmarkSystem::directionOf(SlidingWindow& window, const BlockKey& key) {
+  const auto [it, is_new] = layout_.directions.emplace(key.id, static_cast<int>(layout_.directions.size()));
+  if (is_new) layout_.direction_blocks.push_back(window.block(key));
+  return it->second;
 }
 
 LandmarkSystem::LandmarkSystem(SlidingWindow& window, const std::vector<Factor>& factors,
@@ -199,13 +239,15 @@ LandmarkSystem::LandmarkSystem(SlidingWindow& window, const std::vector<Factor>&
     return landmarks[it->second];
   };
   for (const Factor& factor : factors) {
-    if (!isLandmark(factor)) continue;
-    if (const BlockKey& key = factor.blocks.back(); key.kind == BlockKey::kDirection) {  // a line's structural residual
+    if (!isVision(factor)) continue;
+    if (const BlockKey& key = factor.blocks.back(); factor.blocks.front().kind == BlockKey::kLine) {  // structural
       auto& line = blockOf(lines_, line_at, factor.blocks.front());
       line.structural = &factor;
-      const auto [it, is_new] = layout_.directions.emplace(key.id, static_cast<int>(layout_.directions.size()));
-      if (is_new) layout_.direction_blocks.push_back(window.block(key));
-      line.direction = it->second;
+      line.direction = directionOf(window, key);
+    } else if (key.kind == BlockKey::kDirection) {
+      const int camera = camera_of.at(factor.blocks.front().id);
+      vanishing_.push_back({static_cast<const VanishingFactor*>(factor.cost), factor.loss, camera, directionOf(window, key)});
+      motions_[static_cast<std::size_t>(camera)] = vanishing_.back().factor->motion();
     } else if (const int camera = camera_of.at(factor.blocks.front().id); key.kind == BlockKey::kPoint) {
       auto& point = blockOf(points_, point_at, key);
       point.loss = factor.loss;
@@ -223,6 +265,7 @@ LandmarkSystem::LandmarkSystem(SlidingWindow& window, const std::vector<Factor>&
 double LandmarkSystem::cost(const std::vector<CameraView>& views) const {
   double sum = 0;
   each([&](const auto& landmark) { sum += costOf(landmark, views, correction_, layout_); });
+  for (const DirectionSighting& s : vanishing_) sum += costOf(s, views, correction_, layout_);
   return sum;
 }
 
@@ -231,6 +274,7 @@ double LandmarkSystem::linearise(const std::vector<CameraView>& views) {
   direct_.b.setZero(layout_.size());
   double sum = 0;
   each([&](auto& landmark) { sum += lineariseOne(landmark, views, correction_, layout_, direct_); });
+  for (const DirectionSighting& s : vanishing_) sum += lineariseOne(s, views, correction_, layout_, direct_);
   return sum;
 }
 

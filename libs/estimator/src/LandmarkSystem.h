@@ -65,13 +65,21 @@ struct LandmarkBlock {
   Eigen::Matrix<double, kDirectionTangent, T> W_direction, Y_direction;
 };
 
+/// A sighting of a line that has a direction only.
+struct DirectionSighting {
+  const VanishingFactor* factor = nullptr;
+  const ceres::LossFunction* loss = nullptr;
+  int camera = 0, direction = 0;
+};
+
 /// All points and lines of a window: their residuals in the cameras' tangent spaces and their elimination.
 class LandmarkSystem {
  public:
   /// Groups the factors of landmarks; `camera_of` gives every frame its place.
   LandmarkSystem(SlidingWindow& window, const std::vector<Factor>& factors, const std::map<FrameId, int>& camera_of);
 
-  static bool isLandmark(const Factor& factor);
+  /// Whether a factor depends on images, and thus belongs here.
+  static bool isVision(const Factor& factor);
 
   const CameraLayout& layout() const { return layout_; }
   const FrameMotion& motion(int camera) const { return motions_[static_cast<std::size_t>(camera)]; }  ///< as its factors say
@@ -102,11 +110,14 @@ class LandmarkSystem {
     for (const auto& point : points_) f(point);
     for (const auto& line : lines_) f(line);
   }
+  int directionOf(SlidingWindow& window, const BlockKey& key);
+
   const double* correction_;
   std::vector<FrameMotion> motions_;
   CameraLayout layout_;
   std::vector<LandmarkBlock<PointKind>> points_;
   std::vector<LandmarkBlock<LineKind>> lines_;
+  std::vector<DirectionSighting> vanishing_;
   CameraEquations direct_;
 };
 

@@ -2,6 +2,7 @@
 #include "LineDegeneracy.h"
 
 #include <Eigen/Eigenvalues>
+#include <algorithm>
 #include <cmath>
 
 namespace lintel {
@@ -22,6 +23,45 @@ LineUncertainty uncertaintyOf(const OrthonormalLine& line, const Eigen::Matrix4d
     return std::sqrt(Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d>(c).eigenvalues()[1]);
   };
   return {worst(direction), worst(position)};
+}
+
+double planeSigma(const SlidingWindow& window, const FactorParams& params, const LineSighting& s, const Eigen::Vector3d& d_w) {
+  const Eigen::Vector3d d_c = window.T_w_c(window.frame(s.frame)).q.conjugate() * d_w;
+  const Eigen::Vector3d start = s.start.corrected(window.correction.data()).homogeneous().normalized();
+  const Eigen::Vector3d end = s.end.corrected(window.correction.data()).homogeneous().normalized();
+  // each end moves across the line by sigma: the plane turns about the other one
+  const double sigma_ray = params.line_sigma_px * s.sigma_px / window.camera().meanFocal();
+  return sigma_ray * std::hypot(start.cross(d_c).norm(), end.cross(d_c).norm()) / std::max(start.cross(end).norm(), 1e-6);
+}
+
+double epipoleAngle(const SlidingWindow& window, const LineTrack& track) {
+  constexpr double kLeastBaseline_m = 0.01;
+  const LineSighting& newest = track.sightings.back();
+  const Pose T_w_c = window.T_w_c(window.frame(newest.frame));
+  const Eigen::Vector3d start = newest.start.corrected(window.correction.data()).homogeneous();
+  const Eigen::Vector3d end = newest.end.corrected(window.correction.data()).homogeneous();
+  const Eigen::Vector3d n_w = T_w_c.q * start.cross(end).normalized();
+  double largest = 0;
+  for (const LineSighting& s : track.sightings) {
+    const Eigen::Vector3d baseline = window.T_w_c(window.frame(s.frame)).p - T_w_c.p;
+    if (baseline.norm() < kLeastBaseline_m) continue;
+    largest = std::max(largest, std::asin(std::min(1.0, std::abs(n_w.dot(baseline.normalized())))));
+  }
+  return largest;
+}
+
+LineVerdict judgeLine(const SlidingWindow& window, const DegeneracyParams& params, const LineTrack& track, double depth_m) {
+  if (params.test != "observability" && epipoleAngle(window, track) < params.max_epipole_angle_rad)
+    return LineVerdict::kThroughEpipole;
+  if (params.test == "epipole") return LineVerdict::kGood;
+  if (track.sigma_direction_rad > params.max_sigma_direction_rad) return LineVerdict::kDirectionUnknown;
+  if (track.sigma_distance_m > params.max_sigma_distance * depth_m) return LineVerdict::kDistanceUnknown;
+  return LineVerdict::kGood;
+}
+
+bool entersProblem(const LineTrack& track, const DegeneracyParams& params) {
+  if (!track.triangulated) return false;
+  return !track.degenerate() || params.lines == "use" || (params.lines == "constrain" && track.group != 0);
 }
 
 }  // namespace lintel

@@ -3,6 +3,8 @@
 
 #include <Eigen/Core>
 
+#include "lintel/estimator/EstimatorParams.h"
+#include "lintel/estimator/SlidingWindow.h"
 #include "lintel/geometry/PluckerLine.h"
 
 namespace lintel {
@@ -16,5 +18,19 @@ struct LineUncertainty {
 /// `information`: J^T J of its observations; `along_m`: signed distance along d from the point nearest to the moment's
 /// origin to the middle of what was seen. Unobserved directions give infinity.
 LineUncertainty uncertaintyOf(const OrthonormalLine& line, const Eigen::Matrix4d& information, double along_m);
+
+/// Standard deviation of the angle between a sighting's observation plane and a direction [rad].
+double planeSigma(const SlidingWindow& window, const FactorParams& params, const LineSighting& sighting,
+                  const Eigen::Vector3d& d_w);
+
+/// The largest angle between the line's newest observation plane and the way to any camera that saw it [rad]: zero when
+/// the line passes the epipoles of all of them ([Lim2021] eq. epipole). Zero too when the cameras are in one place.
+double epipoleAngle(const SlidingWindow& window, const LineTrack& track);
+
+/// What to think of a triangulated line whose sigmas are up to date; `depth_m`: of its middle in the newest sighting.
+LineVerdict judgeLine(const SlidingWindow& window, const DegeneracyParams& params, const LineTrack& track, double depth_m);
+
+/// Whether a line is part of the problem: good ones, and degenerate ones as `params.lines` says.
+bool entersProblem(const LineTrack& track, const DegeneracyParams& params);
 
 }  // namespace lintel

@@ -8,6 +8,7 @@
 #include <limits>
 
 #include "LineDegeneracy.h"
+#include "lintel/factors/StructuralFactor.h"
 
 namespace lintel {
 
@@ -19,9 +20,15 @@ struct LineNormal {
   double cost = 0;
 };
 
+/// What else is known of a line.
+struct KnownDirection {
+  Eigen::Vector3d d_w;
+  double sigma_rad;
+};
+
 /// Normal equations of the line alone, poses and calibration fixed.
 LineNormal normalEquations(const SlidingWindow& window, const FactorParams& params, const LineTrack& track,
-                           const LineBlock& line) {
+                           const LineBlock& line, const KnownDirection* known = nullptr) {
   LineNormal normal;
   const ceres::CauchyLoss loss(params.line_loss_width);
   RowMajorMatrix plus(kLineSize, kLineTangent);
@@ -42,12 +49,23 @@ LineNormal normalEquations(const SlidingWindow& window, const FactorParams& para
     normal.b += rho[1] * J.transpose() * r;
     normal.cost += 0.5 * rho[0];
   }
+  if (known) {
+    const double* blocks[] = {line.data(), known->d_w.data()};
+    Eigen::Vector3d r;
+    Eigen::Matrix<double, 3, kLineSize, Eigen::RowMajor> J_ambient;
+    double* jacobians[] = {J_ambient.data(), nullptr};
+    SharedDirectionFactor(1 / known->sigma_rad).Evaluate(blocks, r.data(), jacobians);
+    const Eigen::Matrix<double, 3, 4> J = J_ambient * plus;
+    normal.H += J.transpose() * J;
+    normal.b += J.transpose() * r;
+    normal.cost += 0.5 * r.squaredNorm();
+  }
   return normal;
 }
 
-void refine(const SlidingWindow& window, const FactorParams& params, LineTrack& track) {
+void refine(const SlidingWindow& window, const FactorParams& params, LineTrack& track, const KnownDirection* known = nullptr) {
   const LineManifold manifold;
-  LineNormal now = normalEquations(window, params, track, track.line);
+  LineNormal now = normalEquations(window, params, track, track.line, known);
   double damping = 1e-3;
   for (int i = 0; i < 10; ++i) {
     Eigen::Matrix4d H = now.H;
@@ -56,7 +74,7 @@ void refine(const SlidingWindow& window, const FactorParams& params, LineTrack& 
     const Eigen::Vector4d step = -H.ldlt().solve(now.b);
     LineBlock moved;
     manifold.Plus(track.line.data(), step.data(), moved.data());
-    const LineNormal next = normalEquations(window, params, track, moved);
+    const LineNormal next = normalEquations(window, params, track, moved, known);
     if (next.cost < now.cost) {
       const bool converged = now.cost - next.cost < 1e-4 * now.cost;
       track.line = moved;
@@ -69,16 +87,30 @@ void refine(const SlidingWindow& window, const FactorParams& params, LineTrack& 
   }
 }
 
-/// The ends of a sighting on the line, in the camera's frame. False when one of them is not in front of it.
-bool endsInCamera(const SlidingWindow& window, const LineTrack& track, const LineSighting& s, Eigen::Vector3d ends_c[2]) {
+/// The ends of a sighting on the line, in the camera's frame. How many of them are in front of it.
+int endsInCamera(const SlidingWindow& window, const LineTrack& track, const LineSighting& s, Eigen::Vector3d ends_c[2]) {
   const Pose T_c_w = window.T_w_c(window.frame(s.frame)).inverse();
   const PluckerLine line = lineFromBlock(track.line.data()).plucker();
   const Eigen::Vector3d d_c = T_c_w.q * line.d, p_c = T_c_w * (track.origin_w + line.nearestPoint());
   const PluckerLine line_c{p_c.cross(d_c), d_c};
   const Eigen::Vector2d seen[2] = {s.start.corrected(window.correction.data()), s.end.corrected(window.correction.data())};
-  for (int k = 0; k < 2; ++k)
-    if (!closestPointToRay(line_c, seen[k], ends_c[k]) || ends_c[k].z() < 0.05) return false;
-  return true;
+  int in_front = 0;
+  for (int k = 0; k < 2; ++k) in_front += closestPointToRay(line_c, seen[k], ends_c[k]) && ends_c[k].z() >= 0.05;
+  return in_front;
+}
+
+/// The middle of what the newest sighting shows: its place along the line, from the foot, and its depth.
+struct SeenMiddle {
+  double along_m = 0, depth_m = 0;
+};
+
+SeenMiddle middleOf(const SlidingWindow& window, const LineTrack& track) {
+  const LineSighting& newest = track.sightings.back();
+  Eigen::Vector3d ends_c[2] = {Eigen::Vector3d::UnitZ(), Eigen::Vector3d::UnitZ()};
+  endsInCamera(window, track, newest, ends_c);
+  const Eigen::Vector3d middle_w = window.T_w_c(window.frame(newest.frame)) * (0.5 * (ends_c[0] + ends_c[1]));
+  const Eigen::Vector3d d_w = lineFromBlock(track.line.data()).plucker().d.normalized();
+  return {(middle_w - track.origin_w).dot(d_w), std::max(0.5 * (ends_c[0].z() + ends_c[1].z()), 0.1)};
 }
 
 /// Start from all observation planes [Lim2021, eq. make_plane]: d is what all normals are perpendicular to.
@@ -120,8 +152,10 @@ PluckerLine lineInWorld(const LineTrack& track) {
 double lineError(const SlidingWindow& window, const LineTrack& track) {
   double sum = 0;
   Eigen::Vector3d ends[2];
+  // a line along the motion may end in its own vanishing point, where noise decides what is in front
+  const int least_in_front = track.group != 0 ? 1 : 2;
   for (const LineSighting& s : track.sightings) {
-    if (!endsInCamera(window, track, s, ends)) return std::numeric_limits<double>::infinity();
+    if (endsInCamera(window, track, s, ends) < least_in_front) return std::numeric_limits<double>::infinity();
     const LineFactor factor(s.start, s.end, window.frame(s.frame).bodyMotion(), track.origin_w,
                             window.camera().meanFocal());
     const double* blocks[] = {window.frame(s.frame).pose.data(), window.extrinsics.data(), window.correction.data(),
@@ -134,42 +168,61 @@ double lineError(const SlidingWindow& window, const LineTrack& track) {
 }
 
 void updateLineUncertainty(const SlidingWindow& window, const EstimatorParams& params, LineTrack& track) {
+  // after marginalisation has used its sightings a line lives on with what was known
+  if (!track.placed) return;
+  if (track.verdict != LineVerdict::kNone && static_cast<int>(track.sightings.size()) < params.landmarks.line_min_observations)
+    return;
   const LineNormal normal = normalEquations(window, params.factors, track, track.line);
-  const OrthonormalLine line = lineFromBlock(track.line.data());
-  const PluckerLine plucker = line.plucker();
-  const LineSighting& last = track.sightings.back();
-  const Pose T_w_c = window.T_w_c(window.frame(last.frame));
-  Eigen::Vector3d ends_c[2] = {Eigen::Vector3d::UnitZ(), Eigen::Vector3d::UnitZ()};
-  endsInCamera(window, track, last, ends_c);
-  const Eigen::Vector3d middle_w = T_w_c * (0.5 * (ends_c[0] + ends_c[1]));
-  const double along = (middle_w - track.origin_w).dot(plucker.d.normalized());
-  const LineUncertainty uncertainty = uncertaintyOf(line, normal.H, along);
+  const SeenMiddle middle = middleOf(window, track);
+  const LineUncertainty uncertainty = uncertaintyOf(lineFromBlock(track.line.data()), normal.H, middle.along_m);
   track.sigma_direction_rad = uncertainty.direction_rad;
   track.sigma_distance_m = uncertainty.distance_m;
-  const double depth = std::max(0.5 * (ends_c[0].z() + ends_c[1].z()), 0.1);
-  track.degenerate = track.sigma_direction_rad > params.landmarks.line_max_sigma_direction_rad ||
-                     track.sigma_distance_m > params.landmarks.line_max_sigma_distance * depth;
+  track.verdict = judgeLine(window, params.degeneracy, track, middle.depth_m);
 }
 
 bool triangulateLine(const SlidingWindow& window, const EstimatorParams& params, LineTrack& track) {
   track.triangulated = false;
+  track.verdict = LineVerdict::kNone;
   if (track.sightings.size() < 2) return false;
   track.origin_w = window.T_w_c(window.frame(track.sightings.back().frame)).p;
-  if (!intersectPlanes(window, track)) return false;
+  if (!intersectPlanes(window, track)) {
+    track.verdict = LineVerdict::kDirectionUnknown;
+    track.sigma_direction_rad = track.sigma_distance_m = std::numeric_limits<double>::infinity();
+    return false;
+  }
   // A line that is far from being determined is not worth refining: its cheap estimate says so already.
   updateLineUncertainty(window, params, track);
   constexpr double kHopeless = 3;
-  if (track.sigma_direction_rad > kHopeless * params.landmarks.line_max_sigma_direction_rad) return track.triangulated = true;
+  if (track.sigma_direction_rad > kHopeless * params.degeneracy.max_sigma_direction_rad) return track.triangulated = true;
   refine(window, params.factors, track);
-  if (!(lineError(window, track) < params.landmarks.line_max_error_px)) return false;
+  if (!(lineError(window, track) < params.landmarks.line_max_error_px)) {
+    if (!track.degenerate()) track.verdict = LineVerdict::kNone;  // it is no line; a degenerate one may still be
+    return track.triangulated = track.degenerate() && params.degeneracy.lines == "use";
+  }
   track.triangulated = true;
   updateLineUncertainty(window, params, track);
   return true;
 }
 
+bool triangulateTied(const SlidingWindow& window, const EstimatorParams& params, LineTrack& track, const Eigen::Vector3d& d_w) {
+  constexpr double kMaxRelativeSigma = 1;  // of the depth; beyond, nothing but the direction is known
+  const KnownDirection known{d_w, params.degeneracy.structural_sigma_rad};
+  LineTrack tied = track;
+  refine(window, params.factors, tied, &known);
+  if (!(lineError(window, tied) < params.landmarks.line_max_error_px)) return false;
+  const LineNormal normal = normalEquations(window, params.factors, tied, tied.line, &known);
+  const SeenMiddle middle = middleOf(window, tied);
+  const LineUncertainty uncertainty = uncertaintyOf(lineFromBlock(tied.line.data()), normal.H, middle.along_m);
+  if (uncertainty.distance_m > kMaxRelativeSigma * middle.depth_m) return false;
+  tied.sigma_direction_rad = uncertainty.direction_rad;
+  tied.sigma_distance_m = uncertainty.distance_m;
+  track = tied;
+  return true;
+}
+
 void triangulateLines(SlidingWindow& window, const EstimatorParams& params) {
   for (auto& [id, track] : window.lines)
-    if ((!track.triangulated || track.degenerate) &&
+    if ((!track.triangulated || (track.degenerate() && track.group == 0)) &&
         static_cast<int>(track.sightings.size()) >= params.landmarks.line_min_observations)
       triangulateLine(window, params, track);
 }

@@ -18,11 +18,15 @@ int rejectOutliers(SlidingWindow& window, const LandmarkParams& params) {
     ++rejected;
   }
   for (auto& [id, track] : window.lines) {
-    if (!track.triangulated || track.sightings.empty()) continue;
-    if (lineError(window, track) <= params.line_max_error_px) continue;
+    if (!track.triangulated || !track.placed || track.sightings.empty()) continue;
+    const double error = lineError(window, track);
+    if (error <= params.line_max_error_px) continue;
+    if (track.degenerate()) continue;  // a bad estimate, not a bad track: made anew, from its group or by itself
     track.sightings.erase(track.sightings.begin(), track.sightings.end() - 1);
     track.former.clear();
     track.triangulated = false;
+    track.verdict = LineVerdict::kNone;
+    track.group = 0;
     ++rejected;
   }
   return rejected;

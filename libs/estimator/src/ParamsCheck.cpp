@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "ParamsCheck.h"
 
+#include <algorithm>
 #include <cmath>
 #include <sstream>
 #include <stdexcept>
 #include <string>
 #include <type_traits>
+#include <vector>
 
 namespace lintel {
 
@@ -18,6 +20,13 @@ void require(bool ok, const std::string& name, double value, const std::string& 
   throw std::invalid_argument(text.str());
 }
 
+void requireOneOf(const std::string& name, const std::string& value, const std::vector<std::string>& known) {
+  if (std::find(known.begin(), known.end(), value) != known.end()) return;
+  std::string list;
+  for (const std::string& k : known) list += (list.empty() ? "" : ", ") + k;
+  throw std::invalid_argument("estimator." + name + " = " + value + ", must be one of " + list);
+}
+
 /// Whatever a parameter means, it is finite and not negative; noises, losses and limits are not zero either.
 class FieldCheck {
  public:
@@ -25,7 +34,7 @@ class FieldCheck {
 
   template <class T>
   void operator()(const std::string& key, T& value) {
-    if constexpr (std::is_same_v<T, bool>) {
+    if constexpr (std::is_same_v<T, bool> || std::is_same_v<T, std::string>) {
       return;
     } else if constexpr (std::is_arithmetic_v<T>) {
       require(std::isfinite(static_cast<double>(value)) && value > 0, path_ + key, static_cast<double>(value),
@@ -43,6 +52,8 @@ class FieldCheck {
 }  // namespace
 
 void checkParams(EstimatorParams params) {
+  requireOneOf("degeneracy.lines", params.degeneracy.lines, {"use", "drop", "constrain"});
+  requireOneOf("degeneracy.test", params.degeneracy.test, {"epipole", "observability", "both"});
   FieldCheck check("");
   params.fields(check);
   require(params.keyframes >= 4 && params.keyframes <= 100, "keyframes", params.keyframes, "from 4 to 100");

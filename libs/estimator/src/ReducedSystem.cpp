@@ -22,7 +22,7 @@ ReducedSystem::ReducedSystem(SlidingWindow& window, const std::vector<Factor>& f
                              const std::set<BlockKey>& frozen)
     : window_(window), landmarks_(window, factors, placeCameras(window)) {
   for (const Factor& factor : factors)
-    if (!LandmarkSystem::isLandmark(factor)) others_.push_back(factor);
+    if (!LandmarkSystem::isVision(factor)) others_.push_back(factor);
   placeStates(factors, first, frozen);
 }
 

@@ -29,7 +29,7 @@ double* SlidingWindow::block(const BlockKey& key) {
     case BlockKey::kMotion: return frame(key.id).motion.data();
     case BlockKey::kExtrinsics: return extrinsics.data();
     case BlockKey::kCorrection: return correction.data();
-    case BlockKey::kDirection: return directions.at(key.id).data();
+    case BlockKey::kDirection: return directions.at(key.id).d_w.data();
     case BlockKey::kPoint: return points.at(key.id).point.data();
     case BlockKey::kLine: return lines.at(key.id).line.data();
   }

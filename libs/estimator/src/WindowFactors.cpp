@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "WindowFactors.h"
 
+#include "LineDegeneracy.h"
+
+#include <cmath>
 #include <limits>
 
 namespace lintel {
@@ -108,12 +111,26 @@ void WindowFactors::addPoint(const PointTrack& track) {
   }
 }
 
-void WindowFactors::addLines() {
+void WindowFactors::addLines(const DegeneracyParams& degeneracy) {
   for (const auto& [id, track] : window_.lines)
-    if (track.triangulated && !track.degenerate) addLine(track);
+    if (entersProblem(track, degeneracy)) addLine(track, degeneracy);
 }
 
-void WindowFactors::addLine(const LineTrack& track) {
+void WindowFactors::addLine(const LineTrack& track, const DegeneracyParams& degeneracy) {
+  if (!track.placed) {
+    for (const LineSighting& s : track.sightings) addVanishing(track, s, degeneracy);
+    return;
+  }
+  if (track.sightings.size() < 2) return;  // one sighting says nothing about the cameras
+  addSightings(track);
+  if (track.group == 0) return;
+  setStructuralLoss(degeneracy);
+  add(std::make_unique<SharedDirectionFactor>(1 / degeneracy.structural_sigma_rad),
+      {{BlockKey::kLine, track.id}, {BlockKey::kDirection, track.group}});
+  factors_.back().loss = structural_loss_.get();
+}
+
+void WindowFactors::addSightings(const LineTrack& track) {
   for (const LineSighting& s : track.sightings) {
     const double weight = window_.camera().meanFocal() / (params_.line_sigma_px * s.sigma_px);
     line_factors_.emplace_back(s.start, s.end, motionOf(s.frame), track.origin_w, weight);
@@ -123,6 +140,18 @@ void WindowFactors::addLine(const LineTrack& track) {
                          {BlockKey::kCorrection, 0},
                          {BlockKey::kLine, track.id}}});
   }
+}
+
+void WindowFactors::addVanishing(const LineTrack& track, const LineSighting& s, const DegeneracyParams& degeneracy) {
+  setStructuralLoss(degeneracy);
+  const double sigma = planeSigma(window_, params_, s, window_.directions.at(track.group).d_w);
+  add(std::make_unique<VanishingFactor>(s.start, s.end, motionOf(s.frame), 1 / std::hypot(sigma, degeneracy.structural_sigma_rad)),
+      {{BlockKey::kPose, s.frame}, {BlockKey::kExtrinsics, 0}, {BlockKey::kCorrection, 0}, {BlockKey::kDirection, track.group}});
+  factors_.back().loss = structural_loss_.get();
+}
+
+void WindowFactors::setStructuralLoss(const DegeneracyParams& degeneracy) {
+  if (!structural_loss_) structural_loss_ = std::make_unique<ceres::CauchyLoss>(degeneracy.structural_loss_width);
 }
 
 }  // namespace lintel

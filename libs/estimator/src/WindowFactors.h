@@ -14,6 +14,8 @@
 #include "lintel/factors/ImuFactor.h"
 #include "lintel/factors/LineFactor.h"
 #include "lintel/factors/PointFactor.h"
+#include "lintel/factors/StructuralFactor.h"
+#include "lintel/factors/VanishingFactor.h"
 
 namespace lintel {
 
@@ -41,18 +43,21 @@ class WindowFactors {
   void addImu();
   void addRest(double velocity_sigma);
   void addPoints();
-  void addLines();
+  void addLines(const DegeneracyParams& degeneracy);
 
   /// Only these: residuals between the first frame and others, for marginalising it.
   void addImuAfter(FrameId frame);
   void addRestOf(const WindowFrame& frame, double velocity_sigma);  ///< nothing unless it is at rest
   void addPoint(const PointTrack& track);
-  void addLine(const LineTrack& track);
+  void addLine(const LineTrack& track, const DegeneracyParams& degeneracy);  ///< and what ties it to its group, if it has one
+  void addSightings(const LineTrack& track);  ///< without what ties it
+  void addVanishing(const LineTrack& track, const LineSighting& sighting, const DegeneracyParams& degeneracy);
   void add(std::unique_ptr<ceres::CostFunction> cost, std::vector<BlockKey> blocks);
 
   const std::vector<Factor>& factors() const { return factors_; }
 
  private:
+  void setStructuralLoss(const DegeneracyParams& degeneracy);
   void addImu(const WindowFrame& before, const WindowFrame& frame);
 
   const FrameMotion& motionOf(FrameId id) const { return motions_.at(id); }
@@ -60,6 +65,7 @@ class WindowFactors {
   const SlidingWindow& window_;
   const FactorParams& params_;
   ceres::CauchyLoss point_loss_, line_loss_;
+  std::unique_ptr<ceres::LossFunction> structural_loss_;
   std::map<FrameId, FrameMotion> motions_;
   std::vector<Factor> factors_;
   std::deque<PointFactor> point_factors_;

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include "LineDegeneracy.h"
 #include "Marginalizer.h"
 
 namespace lintel {
@@ -41,9 +42,9 @@ void marginaliseOldest(SlidingWindow& window, const EstimatorParams& params) {
       dropped.insert({BlockKey::kPoint, id});
     }
   for (const auto& [id, track] : window.lines)
-    if (track.triangulated && !track.degenerate && track.sightings.size() > 1 &&
-        track.sightings.front().frame == oldest.id) {
-      factors.addLine(track);
+    if (entersProblem(track, params.degeneracy) && !track.sightings.empty() && track.sightings.front().frame == oldest.id) {
+      if (!track.placed || track.sightings.size() < 2) continue;
+      factors.addSightings(track);
       dropped.insert({BlockKey::kLine, id});
     }
   marginaliseWith(window, factors.factors(), takePriors(window, dropped), dropped);

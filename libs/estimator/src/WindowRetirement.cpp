@@ -37,7 +37,7 @@ void retirePoint(const SlidingWindow& window, const PointTrack& track, WindowUpd
 void retireLine(const LineTrack& track, WindowUpdate& update) {
   if (!track.triangulated) return retireUnplaced(track, update.lines);
   update.lines.push_back({track.id, lineInWorld(track), track.sigma_direction_rad, track.sigma_distance_m,
-                          track.degenerate, allSightings(track.former, track.sightings)});
+                          track.degenerate(), track.group, allSightings(track.former, track.sightings)});
 }
 
 /// Whether a track is of no more use without frame `leaving`.

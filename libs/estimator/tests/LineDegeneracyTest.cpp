@@ -62,7 +62,7 @@ void compareWithMonteCarlo(const std::vector<Pose>& poses, const Segment3& segme
   EstimatorParams params;
   params.factors.line_sigma_px = sigma_px;
   params.factors.line_loss_width = 1e3;  // least squares: what the sigma assumes
-  params.landmarks.line_max_sigma_direction_rad = params.landmarks.line_max_sigma_distance = 10;
+  params.degeneracy.max_sigma_direction_rad = params.degeneracy.max_sigma_distance = 10;
   const auto triangulated = [&](const std::function<Eigen::Vector2d()>& noise) {
     SlidingWindow window = windowAt(poses);
     for (FrameId k = 0; k < poses.size(); ++k) seeLine(window, 1, k, segment_w, noise(), noise());

@@ -38,7 +38,7 @@ TEST(LineTriangulation, IsExactWithoutNoise) {
   LineTrack& track = window.lines[1];
   ASSERT_TRUE(triangulateLine(window, kParams, track));
   EXPECT_TRUE(track.triangulated);
-  EXPECT_FALSE(track.degenerate);
+  EXPECT_FALSE(track.degenerate());
   EXPECT_LT(distanceOf(track, kUpright), 1e-6);
   EXPECT_LT(lineError(window, track), 1e-5);
 }
@@ -58,9 +58,9 @@ TEST(LineTriangulation, HandlesAFlight) {
   int triangulated = 0, degenerate = 0;
   for (const auto& [id, track] : window.lines) {
     if (!track.triangulated) continue;
-    (track.degenerate ? degenerate : triangulated)++;
+    (track.degenerate() ? degenerate : triangulated)++;
     EXPECT_GE(static_cast<int>(track.sightings.size()), kParams.landmarks.line_min_observations);
-    if (track.degenerate) continue;
+    if (track.degenerate()) continue;
     EXPECT_LT(distanceOf(track, flight.sim.lines_w[flight.sim.line_of_track[id]]), 0.01) << "line " << id;
   }
   EXPECT_GT(triangulated, 30);
@@ -71,12 +71,12 @@ TEST(LineTriangulation, ALineThroughTheEpipoleIsDegenerate) {
   // moving along x; the line lies in a plane with the motion: all observation planes are the same
   SlidingWindow window = seenFrom({at(0, 0, 0), at(0.2, 0, 0), at(0.4, 0, 0), at(0.6, 0, 0), at(0.8, 0, 0)},
                                   {{-1, 0.5, 4}, {1.5, 0.6, 4.8}});
-  EXPECT_FALSE(triangulateLine(window, kParams, window.lines[1]) && !window.lines[1].degenerate);
+  EXPECT_FALSE(triangulateLine(window, kParams, window.lines[1]) && !window.lines[1].degenerate());
   // nearly so: there is a solution, and it is known to be worthless
   window = seenFrom({at(0, 0, 0), at(0.2, 0.002, 0), at(0.4, -0.002, 0), at(0.6, 0.001, 0), at(0.8, 0, 0)},
                     {{-1, 0.5, 4}, {1.5, 0.6, 4.8}});
   if (triangulateLine(window, kParams, window.lines[1])) {
-    EXPECT_TRUE(window.lines[1].degenerate);
+    EXPECT_TRUE(window.lines[1].degenerate());
     EXPECT_GT(window.lines[1].sigma_distance_m, 0.1 * 4.4);
   }
 }
@@ -86,7 +86,7 @@ TEST(LineTriangulation, RailsSeenWhileMovingAlongThemAreDegenerate) {
   for (const double side : {-0.7, 0.7}) {
     SlidingWindow window = seenFrom({at(0, 0, 0), at(0, 0, 0.3), at(0, 0, 0.6), at(0, 0, 0.9), at(0, 0, 1.2)},
                                     {{side, 1, 3}, {side, 1, 9}});
-    EXPECT_FALSE(triangulateLine(window, kParams, window.lines[1]) && !window.lines[1].degenerate) << side;
+    EXPECT_FALSE(triangulateLine(window, kParams, window.lines[1]) && !window.lines[1].degenerate()) << side;
   }
 }
 
@@ -94,7 +94,7 @@ TEST(LineTriangulation, RailsAreKnownOnceTheCameraMovesAcross) {
   SlidingWindow window = seenFrom({at(0, 0, 0), at(0.2, 0, 0.3), at(0.4, 0, 0.6), at(0.6, 0, 0.9), at(0.8, 0, 1.2)},
                                   {{0.7, 1, 3}, {0.7, 1, 9}});
   ASSERT_TRUE(triangulateLine(window, kParams, window.lines[1]));
-  EXPECT_FALSE(window.lines[1].degenerate);
+  EXPECT_FALSE(window.lines[1].degenerate());
 }
 
 TEST(LineTriangulation, ADegenerateLineIsTriedAgainWithNewSightings) {
@@ -102,11 +102,11 @@ TEST(LineTriangulation, ADegenerateLineIsTriedAgainWithNewSightings) {
   const Segment3 rail{{0.7, 1, 3}, {0.7, 1, 9}};
   for (FrameId k = 0; k < 4; ++k) seeLine(window, 1, k, rail);
   triangulateLines(window, kParams);
-  ASSERT_FALSE(window.lines[1].triangulated && !window.lines[1].degenerate);
+  ASSERT_FALSE(window.lines[1].triangulated && !window.lines[1].degenerate());
   seeLine(window, 1, 4, rail);
   triangulateLines(window, kParams);
   EXPECT_TRUE(window.lines[1].triangulated);
-  EXPECT_FALSE(window.lines[1].degenerate);
+  EXPECT_FALSE(window.lines[1].degenerate());
   EXPECT_LT(distanceOf(window.lines[1], rail), 1e-4);
 }
 
@@ -116,7 +116,7 @@ TEST(LineTriangulation, ContradictionsGiveNoUsableLine) {
   for (std::size_t i = 0; i < track.sightings.size(); ++i)
     for (NormalisedObservation* end : {&track.sightings[i].start, &track.sightings[i].end})
       end->position.x() += (i % 2 == 0 ? 20.0 : -20.0) / 500;
-  EXPECT_FALSE(triangulateLine(window, kParams, track) && !track.degenerate);
+  EXPECT_FALSE(triangulateLine(window, kParams, track) && !track.degenerate());
 }
 
 TEST(LineTriangulation, FewSightingsAreLeftForLater) {

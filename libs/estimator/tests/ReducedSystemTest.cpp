@@ -35,16 +35,22 @@ class ReducedSystemTest : public testing::Test {
     for (std::size_t k = 0; k < window_.frames.size(); ++k)
       window_.frames[k].pose.head<3>() += 0.002 * Eigen::Vector3d(1, -1, static_cast<double>(k));
     window_.correction << 0.3, -0.2, 0.1, 0.4, 1e-3, -1e-3, 1e-3;
-    window_.directions[3] = DirectionBlock(0.1, 0.2, 1).normalized();
+    window_.directions[3].d_w = DirectionBlock(0.1, 0.2, 1).normalized();
     factors_ = std::make_unique<WindowFactors>(window_, kParams.factors);
     factors_->addImu();
     factors_->addPoints();
-    factors_->addLines();
+    factors_->addLines(kParams.degeneracy);
     factors_->addCalibrationPriors(kParams.calibration, window_.T_b_c());
     factors_->addGauge();
     for (const auto& [id, track] : window_.lines)
-      if (track.triangulated && !track.degenerate && lines_++ % 2 == 0)
+      if (track.triangulated && !track.degenerate() && lines_++ % 2 == 0)
         factors_->add(std::make_unique<SharedDirectionFactor>(10.0), {{BlockKey::kLine, id}, {BlockKey::kDirection, 3}});
+    for (auto& [id, track] : window_.lines) {  // and some that have a direction only
+      if (track.triangulated && !track.degenerate()) continue;
+      track.group = 3;
+      for (const LineSighting& s : track.sightings) factors_->addVanishing(track, s, kParams.degeneracy);
+      vanishing_ += !track.sightings.empty();
+    }
   }
 
   std::set<BlockKey> landmarks() const {
@@ -57,13 +63,14 @@ class ReducedSystemTest : public testing::Test {
 
   SlidingWindow window_{eurocRig()};
   std::unique_ptr<WindowFactors> factors_;
-  int lines_ = 0;
+  int lines_ = 0, vanishing_ = 0;
 };
 
 TEST_F(ReducedSystemTest, EqualsTheSchurComplementOfTheDenseSystem) {
   const std::set<BlockKey> eliminated = landmarks();
   ASSERT_GT(eliminated.size(), 15u);
   ASSERT_GE(lines_, 2);
+  ASSERT_GE(vanishing_, 1);
   const NormalEquations dense = linearise(window_, factors_->factors(), eliminated);
   const Eigen::Index m = dense.offsets[eliminated.size()], n = dense.H.rows() - m;
   const Eigen::LDLT<Eigen::MatrixXd> Hmm(dense.H.topLeftCorner(m, m));

@@ -38,7 +38,7 @@ WindowFactors everything(const SlidingWindow& window) {
                              Eigen::VectorXd::Constant(kMotionSize, 0.02)),  // half a second does not show the scale
               {{BlockKey::kMotion, window.frames.front().id}});
   factors.addPoints();
-  factors.addLines();
+  factors.addLines(kParams.degeneracy);
   return factors;
 }
 

@@ -12,6 +12,7 @@
 #include "lintel/factors/PointFactor.h"
 #include "lintel/factors/PriorFactors.h"
 #include "lintel/factors/StructuralFactor.h"
+#include "lintel/factors/VanishingFactor.h"
 #include "lintel/geometry/Frames.h"
 #include "lintel/geometry/Rotation.h"
 
@@ -161,6 +162,36 @@ TEST(StructuralFactors, GradientsFromParallelToPerpendicularAndForLinesThroughTh
       expectGradients(SharedDirectionFactor(57), {&kLineManifold, &direction_manifold}, {i.data(), group.data()});
       expectGradients(ParallelLinesFactor(57), {&kLineManifold, &kLineManifold}, {i.data(), j.data()});
     }
+}
+
+TEST(VanishingFactor, IsTheAngleBetweenPlaneAndDirection) {
+  // The plane of the image line y = 0.5 holds the x axis and (0, 0.5, 1).
+  const PoseBlock identity = toBlock(Pose{});
+  const CorrectionBlock zero = CorrectionBlock::Zero();
+  VanishingFactor factor(observation(-0.3, 0.5), observation(0.3, 0.5), {}, 100);
+  const double angle = 0.1;
+  const Eigen::Vector3d normal = Eigen::Vector3d(0, 1, -0.5).normalized();
+  for (const double sign : {1.0, -1.0}) {
+    const DirectionBlock in_plane(1, 0, 0), off = std::cos(angle) * in_plane + sign * std::sin(angle) * normal;
+    double r = 0;
+    const double* blocks[] = {identity.data(), identity.data(), zero.data(), in_plane.data()};
+    ASSERT_TRUE(factor.Evaluate(blocks, &r, nullptr));
+    EXPECT_NEAR(r, 0, 1e-12);
+    blocks[3] = off.data();
+    ASSERT_TRUE(factor.Evaluate(blocks, &r, nullptr));
+    EXPECT_NEAR(std::abs(r), 100 * std::sin(angle), 1e-9);
+  }
+}
+
+TEST(VanishingFactor, GradientsForShortAndLongLines) {
+  const Scene s;
+  const DirectionManifold direction_manifold;
+  const DirectionBlock direction = Eigen::Vector3d(0.5, -0.2, 0.8).normalized();
+  for (const double length : {0.02, 0.3, 1.0}) {
+    VanishingFactor factor(observation(0.12, -0.2), observation(0.12 + length, -0.2 + 0.5 * length), kMotion, 200);
+    expectGradients(factor, {&kPoseManifold, &kPoseManifold, nullptr, &direction_manifold},
+                    {s.T_w_bi.data(), s.T_b_c.data(), s.correction.data(), direction.data()}, 1e-5);
+  }
 }
 
 std::shared_ptr<Preintegration> somePreintegration() {

@@ -32,7 +32,9 @@ Eigen::Vector3d pointOnShell(const Eigen::AlignedBox3d& shell, RandomStream& ran
 void drawLandmarks(const Eigen::AlignedBox3d& shell, const TrackSimulationParams& params, SimulatedTracks& out) {
   RandomStream random(params.seed, 0x6c616e64);
   for (int i = 0; i < params.points; ++i) out.points_w.push_back(pointOnShell(shell, random));
-  for (int i = 0; i < params.lines; ++i) {
+  out.lines_w = params.lines_w;
+  out.line_groups.assign(params.lines_w.size(), -1);
+  for (int i = 0; i < (params.lines_w.empty() ? params.lines : 0); ++i) {
     const Eigen::Vector3d middle = pointOnShell(shell, random);
     const bool parallel = random.uniform() < params.axis_parallel_share;
     const int axis = random.index(3);

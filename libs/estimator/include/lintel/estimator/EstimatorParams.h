@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <string>
+
 namespace lintel {
 
 /// How observations become residuals.
@@ -62,8 +64,6 @@ struct LandmarkParams {
   double min_depth_m = 0.1;
   int line_min_observations = 4;         ///< window frames
   double line_max_error_px = 3.0;        ///< mean distance of the end points
-  double line_max_sigma_direction_rad = 0.10;  ///< above: degenerate, direction unknown
-  double line_max_sigma_distance = 0.10;       ///< of the depth; above: degenerate, distance unknown
 
   template <class F>
   void fields(F&& field) {
@@ -74,8 +74,32 @@ struct LandmarkParams {
     field("min_depth_m", min_depth_m);
     field("line_min_observations", line_min_observations);
     field("line_max_error_px", line_max_error_px);
-    field("line_max_sigma_direction_rad", line_max_sigma_direction_rad);
-    field("line_max_sigma_distance", line_max_sigma_distance);
+  }
+};
+
+/// Which lines are degenerate, and what becomes of them.
+struct DegeneracyParams {
+  std::string lines = "constrain";   ///< use: as they are [PL-VINS]; drop: not at all; constrain: tied to parallel ones
+  std::string test = "observability";  ///< epipole: [Lim2021]; observability: from a line's information; both: either
+  double max_sigma_direction_rad = 0.10;  ///< observability: above, the direction is unknown
+  double max_sigma_distance = 0.10;       ///< observability: of the depth; above, the distance is unknown
+  double max_epipole_angle_rad = 0.035;   ///< epipole: between the line's plane and the motion; below, degenerate
+  double structural_sigma_rad = 0.01;     ///< how parallel the lines of a group are
+  double structural_loss_width = 2.0;     ///< Cauchy width, in standard deviations
+  double max_misfit = 2.0;                ///< of a line's planes with the group's direction, in standard deviations
+  int min_group = 3;                      ///< lines that agree before a direction is believed
+
+  template <class F>
+  void fields(F&& field) {
+    field("lines", lines);
+    field("test", test);
+    field("max_sigma_direction_rad", max_sigma_direction_rad);
+    field("max_sigma_distance", max_sigma_distance);
+    field("max_epipole_angle_rad", max_epipole_angle_rad);
+    field("structural_sigma_rad", structural_sigma_rad);
+    field("structural_loss_width", structural_loss_width);
+    field("max_misfit", max_misfit);
+    field("min_group", min_group);
   }
 };
 
@@ -141,6 +165,7 @@ struct EstimatorParams {
   FactorParams factors;
   CalibrationParams calibration;
   LandmarkParams landmarks;
+  DegeneracyParams degeneracy;
   InitializerParams initializer;
   FailureParams failure;
 
@@ -157,6 +182,7 @@ struct EstimatorParams {
     field("factors", factors);
     field("calibration", calibration);
     field("landmarks", landmarks);
+    field("degeneracy", degeneracy);
     field("initializer", initializer);
     field("failure", failure);
   }

@@ -70,6 +70,21 @@ struct PointTrack {
   bool triangulated = false;
 };
 
+/// What the observations say about a line. From kThroughEpipole on it is degenerate.
+enum class LineVerdict {
+  kNone,              ///< not triangulated
+  kGood,
+  kThroughEpipole,    ///< the test of [Lim2021]: it lies in one plane with the motion
+  kDirectionUnknown,  ///< by its information: LineDegeneracy.h
+  kDistanceUnknown,
+};
+
+/// A direction that lines share.
+struct SharedDirection {
+  DirectionBlock d_w = DirectionBlock::UnitX();
+  FrameId last_used = 0;   ///< newest frame that had a member
+};
+
 /// A line: world axes, moment about `origin_w`.
 struct LineTrack {
   TrackId id = 0;
@@ -78,8 +93,13 @@ struct LineTrack {
   LineBlock line = LineBlock::Zero();
   Eigen::Vector3d origin_w = Eigen::Vector3d::Zero();
   bool triangulated = false;
-  bool degenerate = false;
+  LineVerdict verdict = LineVerdict::kNone;
+  std::uint64_t group = 0;                        ///< direction it is tied to; 0: none
+  bool placed = true;                             ///< false: in a group, and its distance is not known
+  bool alone = false;                             ///< its end points have contradicted such a direction
   double sigma_direction_rad = 0, sigma_distance_m = 0;
+
+  bool degenerate() const { return verdict > LineVerdict::kGood; }
 };
 
 /// A prior over some blocks of the window.
@@ -96,7 +116,8 @@ class SlidingWindow {
   std::deque<WindowFrame> frames;             ///< ascending time; the last is the newest
   std::map<TrackId, PointTrack> points;       ///< ordered: the same sums in the same order every run
   std::map<TrackId, LineTrack> lines;
-  std::map<std::uint64_t, DirectionBlock> directions;  ///< shared by groups of parallel lines
+  std::map<std::uint64_t, SharedDirection> directions;  ///< of groups of parallel lines; ids from 1
+  std::uint64_t next_direction = 1;
   PoseBlock extrinsics;                       ///< T_b_c
   CorrectionBlock correction = CorrectionBlock::Zero();
   std::vector<WindowPrior> priors;            ///< from marginalisation and from initialisation

@@ -37,6 +37,7 @@ struct RetiredLine {
   PluckerLine line_w;
   double sigma_direction_rad = 0, sigma_distance_m = 0;
   bool degenerate = false;
+  std::uint64_t group = 0;              ///< parallel group whose direction it was tied to (constrained); 0: none
   std::vector<LineSighting> sightings;  ///< in keyframes
   bool triangulated = true;             ///< false: line and sigmas say nothing, the window could not place it
 };
@@ -62,6 +63,7 @@ struct WindowUpdate {
 
   // figures of this step
   int points_used = 0, lines_tracked = 0, lines_used = 0, lines_degenerate = 0, iterations = 0;
+  int lines_through_epipole = 0, lines_direction_unknown = 0, lines_distance_unknown = 0, lines_constrained = 0;
   bool keyframe = false, at_rest = false;
 
   bool hasPose() const { return status == EstimatorStatus::kTracking || status == EstimatorStatus::kPropagated; }

@@ -21,6 +21,7 @@ struct TrackSimulationParams {
   int lines = 320;         ///< lines round the path, all about
   int max_points_per_frame = 150;    ///< those tracked longest stay
   int max_lines_per_frame = 60;      ///< those tracked longest stay
+  std::vector<Segment3> lines_w;     ///< lines of your own, in place of those round the path; group -1
   double axis_parallel_share = 0.7;  ///< share of the lines that are parallel to an axis of the world
   double margin_m = 2.5;             ///< the landmarks' shell is this far outside the path's bounding box
   double border_px = 4;              ///< nothing is seen nearer to the image's border

@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <Eigen/Core>
+
+#include "lintel/estimator/SlidingWindow.h"
+
+namespace lintel {
+
+enum class EndsVerdict {
+  kNoCorners,  ///< an end lies at the image's border or jumps about (occlusion, fragmentation)
+  kTooEarly,   ///< the ends look fixed, but have no parallax yet
+  kCorners,
+};
+
+/// A segment in the world from its end points, as far as these are real corners.
+struct SeenEnds {
+  EndsVerdict verdict = EndsVerdict::kNoCorners;
+  Eigen::Vector3d start_w = Eigen::Vector3d::Zero(), end_w = Eigen::Vector3d::Zero();  ///< kCorners only, as what follows
+  double sigma_direction_rad = 0;
+  double sigma_distance_m = 0;  ///< of the middle
+};
+
+/// Triangulates both end points of a track as points: what moves along a line shows its depth.
+SeenEnds triangulateEnds(const SlidingWindow& window, const LineTrack& track);
+
+}  // namespace lintel
