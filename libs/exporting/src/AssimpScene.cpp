@@ -31,7 +31,7 @@ struct MeshParts {
   void add(const DrawnSegment& s, const Drawing& drawing) {
     if (drawing.style == LineStyle::kTubes) {
       indices_per_face = 3;
-      const auto tube = makeTube(s.start, s.end, drawing.radius_m);
+      const auto tube = makeTube(s.start, s.end, drawing.radiusOf(s));
       if (tube) body(tube->corners.data(), 8, s.colour, kTubeTriangles[0].data(), 3 * kTubeTriangles.size());
       return;
     }

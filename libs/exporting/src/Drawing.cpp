@@ -140,7 +140,7 @@ double defaultRadius(const Drawing& drawing) {
   const double core_m = std::max(drawing.core.diagonal().norm(), 1e-3);
   Eigen::AlignedBox3d whole = drawing.core;
   for (const MapLine* line : drawing.lines) whole.extend(line->segment_w.start).extend(line->segment_w.end);
-  const double radius_m = std::clamp(0.001 * whole.diagonal().norm(), 0.0015 * core_m, 0.004 * core_m);
+  const double radius_m = std::clamp(0.001 * whole.diagonal().norm(), 0.0015 * core_m, 0.0025 * core_m);
   return std::clamp(radius_m, 1e-5, 0.05);
 }
 

@@ -40,11 +40,14 @@ struct Drawing {
   std::vector<const MapLine*> lines;          ///< drawn ones, ascending id
   LineStyle style = LineStyle::kLines;
   LineColour colour = LineColour::kKind;
-  double radius_m = 0.01;                           ///< of tubes
+  double radius_m = 0.01;                           ///< of lines' tubes
   double frustum_m = 0.2;                           ///< depth of a keyframe's frustum
   Eigen::AlignedBox3d core;                         ///< of the 2 to 98 % of what is drawn; never empty
   std::vector<std::pair<std::string, Rgb>> legend;  ///< what the lines' colours mean
   ExportSummary summary;                            ///< without files
+
+  /// Of a stroke's tube: keyframes and the trajectory are thinner, so that they do not hide the lines.
+  double radiusOf(const DrawnSegment& s) const { return s.line ? radius_m : 0.3 * radius_m; }
 };
 
 /// Strokes of a camera's frustum of the given depth, in the world: kFrustumStrokes, the first from the eye; none if not

@@ -53,7 +53,7 @@ class PlyWriter {
   }
 
   void addTube(const DrawnSegment& s) {
-    if (const auto tube = makeTube(s.start, s.end, drawing_.radius_m)) body(tube->corners, kTubeTriangles, s.colour);
+    if (const auto tube = makeTube(s.start, s.end, drawing_.radiusOf(s))) body(tube->corners, kTubeTriangles, s.colour);
   }
 
   void addTetrahedron(const DrawnPoint& p) {

@@ -49,7 +49,7 @@ void writePart(const Drawing& drawing, const DrawnPart& part, Text& text) {
   for (const DrawnSegment& s : part.segments) {
     if (!tubes) {
       shape.stroke(s);
-    } else if (const auto tube = makeTube(s.start, s.end, drawing.radius_m)) {
+    } else if (const auto tube = makeTube(s.start, s.end, drawing.radiusOf(s))) {
       shape.tube(*tube, s.colour);
     }
   }

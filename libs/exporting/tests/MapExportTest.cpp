@@ -103,6 +103,21 @@ TEST_F(MapExport, GlbGivesTheSameSegmentsBackUnderNamedNodes) {
   EXPECT_EQ(reimport(in("tubes.glb")).triangles, 12 * kRoom.lines.size());
 }
 
+TEST_F(MapExport, TubesOfKeyframesAreThinnerThanThoseOfLines) {
+  ExportParams params = style(LineStyle::kTubes);
+  params.radius_m = 0.1;
+  const auto widest = [&](MapLayer layer) {
+    params.layers = {layer};
+    exportMap(kRoom, in("map.ply"), params);
+    Assimp::Importer importer;
+    const aiScene* scene = importer.ReadFile(in("map.ply"), 0);
+    const aiVector3D* v = scene->mMeshes[0]->mVertices;
+    return (v[0] - v[2]).Length();  // across the first tube
+  };
+  EXPECT_NEAR(widest(MapLayer::kLines), 0.2, 1e-5);
+  EXPECT_NEAR(widest(MapLayer::kKeyframes), 0.06, 1e-5);
+}
+
 TEST_F(MapExport, GltfDaeAndX3dGiveTheSameSegmentsBack) {
   ExportParams params;
   params.layers = {MapLayer::kLines};
