@@ -8,6 +8,7 @@
 #include <filesystem>
 #include <fstream>
 #include <set>
+#include <sstream>
 
 #include "MapSections.h"
 #include "lintel/mapping/AtomicFile.h"
@@ -46,15 +47,8 @@ void writeSection(AtomicFile& file, std::string_view name, const std::string& pa
 /// Takes a map file apart; knows where it is for messages.
 class MapFileReader {
  public:
-  explicit MapFileReader(const std::string& path) : path_(path), file_(path, std::ios::binary) {
-    const int reason = errno;
-    std::error_code error;
-    const bool regular = std::filesystem::is_regular_file(path, error);
-    if (!file_) throw MapFileError("cannot read " + path_ + ": " + std::strerror(reason) + "; name a map.lintel");
-    if (!regular) throw MapFileError("cannot read " + path_ + ": not a file; name a map.lintel");
-    left_ = std::filesystem::file_size(path, error);
-    if (error) throw MapFileError("cannot read " + path_ + ": " + error.message());
-  }
+  MapFileReader(const std::string& path, std::istream& file, std::uint64_t size)
+      : path_(path), file_(file), left_(size) {}
 
   LineMap read() {
     readHead();
@@ -117,7 +111,7 @@ class MapFileReader {
   }
 
   std::string path_;
-  std::ifstream file_;
+  std::istream& file_;
   std::uint64_t left_ = 0;
 };
 
@@ -142,6 +136,21 @@ void writeMap(const LineMap& map, const std::string& path) {
   }
 }
 
-LineMap readMap(const std::string& path) { return MapFileReader(path).read(); }
+LineMap readMap(const std::string& path) {
+  std::ifstream file(path, std::ios::binary);
+  const int reason = errno;
+  std::error_code error;
+  const bool regular = std::filesystem::is_regular_file(path, error);
+  if (!file) throw MapFileError("cannot read " + path + ": " + std::strerror(reason) + "; name a map.lintel");
+  if (!regular) throw MapFileError("cannot read " + path + ": not a file; name a map.lintel");
+  const auto size = std::filesystem::file_size(path, error);
+  if (error) throw MapFileError("cannot read " + path + ": " + error.message());
+  return MapFileReader(path, file, size).read();
+}
+
+LineMap mapFromBytes(const std::string& bytes, const std::string& name) {
+  std::istringstream file(bytes);
+  return MapFileReader(name, file, bytes.size()).read();
+}
 
 }  // namespace lintel

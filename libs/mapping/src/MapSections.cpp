@@ -8,7 +8,7 @@ namespace {
 // Smallest bytes of one record, to bound what its announced number may reserve.
 constexpr std::size_t kKeyframeSize = 8 + 8 + 7 * 8 + 9 * 8, kPointObservationSize = 8 + 2 * 8,
                       kPointSize = 8 + 3 * 8 + 8 + 16 + 8, kLineObservationSize = 8 + 4 * 8,
-                      kLineSize = 8 + 6 * 8 + 16 + 16 + 1 + 4 + 8, kTrajectorySize = 8 + 7 * 8;
+                      kLineSize = 8 + 6 * 8 + 16 + 16 + 1 + 4 + 8, kTrajectorySize = 8 + 7 * 8, kGroupSize = 8 + 3 * 8 + 8;
 
 enum LineFlag : std::uint8_t { kDegenerate = 1, kConstrained = 2 };
 
@@ -115,6 +115,16 @@ void decodeTrajectory(ByteReader& in, LineMap& map) {
   for (auto& [t_ns, T_w_b] : map.trajectory) t_ns = in.i64(), T_w_b = in.pose();
 }
 
+void encodeGroups(const LineMap& map, ByteWriter& out) {
+  out.u64(map.groups.size());
+  for (const MapGroup& group : map.groups) out.text(group.name), out.vec3(group.direction_w), out.f64(group.spread_rad);
+}
+
+void decodeGroups(ByteReader& in, LineMap& map) {
+  map.groups.resize(in.count(kGroupSize));
+  for (MapGroup& group : map.groups) group.name = in.text(), group.direction_w = in.vec3(), group.spread_rad = in.f64();
+}
+
 }  // namespace
 
 const MapSection kMapSections[kMapSectionCount] = {{"RIG_", encodeRig, decodeRig},
@@ -123,6 +133,7 @@ const MapSection kMapSections[kMapSectionCount] = {{"RIG_", encodeRig, decodeRig
                                                    {"KEYF", encodeKeyframes, decodeKeyframes},
                                                    {"PNTS", encodePoints, decodePoints},
                                                    {"LINE", encodeLines, decodeLines},
-                                                   {"TRAJ", encodeTrajectory, decodeTrajectory}};
+                                                   {"TRAJ", encodeTrajectory, decodeTrajectory},
+                                                   {"GRPS", encodeGroups, decodeGroups}};
 
 }  // namespace lintel

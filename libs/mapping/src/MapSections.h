@@ -19,7 +19,7 @@ struct MapSection {
 };
 
 /// All sections in the order in which they are written.
-constexpr std::size_t kMapSectionCount = 7;
+constexpr std::size_t kMapSectionCount = 8;
 extern const MapSection kMapSections[kMapSectionCount];
 
 }  // namespace lintel

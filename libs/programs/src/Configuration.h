@@ -6,7 +6,8 @@
 #include <vector>
 
 #include "lintel/estimator/EstimatorParams.h"
-#include "lintel/mapping/MapBuilder.h"
+#include "lintel/mapping/BatchRefinement.h"
+#include "lintel/mapping/MapParams.h"
 #include "lintel/tracking/FrontEndParams.h"
 
 namespace lintel {
@@ -16,12 +17,14 @@ struct Configuration {
   FrontEndParams tracking;
   EstimatorParams estimator;
   MapParams map;
+  RefinementParams refinement;
 
   template <class F>
   void fields(F&& field) {
     field("tracking", tracking);
     field("estimator", estimator);
     field("map", map);
+    field("refinement", refinement);
   }
 };
 

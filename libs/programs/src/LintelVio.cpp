@@ -11,6 +11,7 @@
 #include <fstream>
 #include <iomanip>
 #include <iterator>
+#include <optional>
 #include <ostream>
 #include <stdexcept>
 
@@ -49,7 +50,8 @@ class LintelVio {
 
   int run(int argc, const char* const* argv) {
     if (const auto exit_code = parseArguments(app_, argc, argv, out_, err_)) return *exit_code;
-    const Configuration configuration = readOptions();
+    Configuration configuration = readOptions();
+    if (no_refine_) configuration.refinement.enabled = false;
     if (dump_config_) {
       out_ << writeConfiguration(configuration);
       return 0;
@@ -93,6 +95,7 @@ class LintelVio {
         ->type_name("EXT,...");
     app_.add_option("--draw-tracks", draw_tracks_, "Write every frame with its points and lines as a PNG to this folder")
         ->type_name("DIR");
+    app_.add_flag("--no-refine", no_refine_, "Leave out the batch adjustment after the last frame");
     app_.add_flag("-w,--overwrite", overwrite_, "Write into OUT although it holds the results of an earlier run");
     app_.add_flag("-q,--quiet", quiet_, "No progress, no summary");
     app_.add_flag("--dump-config", dump_config_, "Print the effective configuration and stop");
@@ -129,6 +132,7 @@ class LintelVio {
 
   OdometryResult process(Recording& recording, const Configuration& configuration) {
     Progress progress(err_, progressStyleFor(err_, quiet_), "processing", "frames", recording.expectedFrames());
+    std::optional<Progress> refining;
     calibration_ = recording.rig();
     const Rig& rig = calibration_;
     return runOdometry(recording, configuration, threads_,
@@ -139,6 +143,13 @@ class LintelVio {
                          char name[32];
                          std::snprintf(name, sizeof name, "%06zu.png", done - 1);
                          drawTracks((fs::path(draw_tracks_) / name).string(), frame, rig, tracks);
+                       },
+                       [&](double done) {
+                         if (!refining) {
+                           progress.clear();
+                           refining.emplace(err_, progressStyleFor(err_, quiet_), "refining", "%", 100);
+                         }
+                         refining->update(static_cast<std::size_t>(100 * done));
                        });
   }
 
@@ -148,6 +159,10 @@ class LintelVio {
     LineMap map = result.map;
     map.configuration = writeConfiguration(configuration);
     AtomicFile::writeWhole((out / "trajectory.tum").string(), trajectoryText(result.trajectory));
+    std::error_code none;  // what an earlier run left must not pass for this run's
+    fs::remove(out / "trajectory_refined.tum", none);
+    if (result.refinement.accepted)
+      AtomicFile::writeWhole((out / "trajectory_refined.tum").string(), trajectoryText(result.refined_trajectory));
     AtomicFile::writeWhole((out / "config.yaml").string(), map.configuration);
     writeMap(map, (out / "map.lintel").string());
     for (const std::string& extension : exports_)
@@ -186,8 +201,10 @@ class LintelVio {
     for (const std::string& failure : s.failures) out_ << "started anew " << failure << "\n";
     out_ << "map: " << result.map.lines.size() << " lines, " << result.map.points.size() << " points, "
          << result.map.keyframes.size() << " keyframes\n";
+    if (!result.refinement.verdict.empty()) out_ << result.refinement.verdict << "\n";
     const fs::path folder(output_);
-    out_ << "written: " << (folder / "trajectory.tum").string() << ", map.lintel, stats.json, config.yaml, report.html\n";
+    out_ << "written: " << (folder / "trajectory.tum").string()
+         << (result.refinement.accepted ? ", trajectory_refined.tum" : "") << ", map.lintel, stats.json, config.yaml, report.html\n";
     for (const std::string& file : exported_) {
       std::string hint = viewerHint(fs::path(file).extension().string().substr(1));
       if (const std::size_t place = hint.find("FILE"); place != std::string::npos) hint.replace(place, 4, file);
@@ -211,7 +228,7 @@ class LintelVio {
   RunSeries series_;
   Rig calibration_;
   int threads_ = 2;
-  bool overwrite_ = false, quiet_ = false, dump_config_ = false;
+  bool no_refine_ = false, overwrite_ = false, quiet_ = false, dump_config_ = false;
 };
 
 }  // namespace

@@ -6,6 +6,7 @@
 #include <thread>
 
 #include "BoundedQueue.h"
+#include "lintel/mapping/MapBuilder.h"
 #include "lintel/tracking/FrontEnd.h"
 
 namespace lintel {
@@ -22,8 +23,8 @@ struct TrackedFrame {
 class BackEnd {
  public:
   BackEnd(const Rig& rig, const Configuration& configuration, const OdometryObserver& observer, OdometryResult& result)
-      : rig_(rig), estimator_(rig, configuration.estimator), map_(rig, configuration.map), observer_(observer),
-        result_(result) {}
+      : rig_(rig), configuration_(configuration), estimator_(rig, configuration.estimator),
+        map_(rig, configuration.map), observer_(observer), result_(result) {}
 
   void process(const TrackedFrame& frame) {
     OdometryStatistics& s = result_.statistics;
@@ -40,15 +41,15 @@ class BackEnd {
     if (observer_) observer_(frame.step.frame, frame.tracks, update, s.frames);
   }
 
-  void finish() {
+  void finish(const RefinementProgress& refining) {
     const CalibrationEstimate calibration = estimator_.calibration();
     result_.rig = rig_;
     result_.rig.camera = calibration.camera;
     result_.rig.T_b_c = calibration.T_b_c;
     result_.time_offset_s = calibration.time_offset_s;
     map_.add(estimator_.finish());
-    map_.setRig(result_.rig);
-    result_.map = map_.build();
+    map_.setCalibration(result_.rig, result_.time_offset_s);
+    finishMap(refining);
     OdometryStatistics& s = result_.statistics;
     s.keyframes = result_.map.keyframes.size();
     if (s.window_frames == 0) return;
@@ -58,6 +59,23 @@ class BackEnd {
   }
 
  private:
+  void finishMap(const RefinementProgress& refining) {
+    MapMaterial material = map_.material();
+    if (configuration_.refinement.enabled && !material.keyframes.empty()) {
+      const StageClock::Scope scope(result_.statistics.refinement);
+      const BatchRefinement refinement(rig_, configuration_.estimator, configuration_.map, configuration_.refinement);
+      result_.refinement = refinement.refine(material, refining);
+    } else {
+      prepareMaterial(configuration_.map, material);
+    }
+    if (result_.refinement.accepted) {
+      result_.rig = material.rig;
+      result_.time_offset_s = material.time_offset_s;
+      for (const auto& [t_ns, T_w_b] : material.trajectory) result_.refined_trajectory.push_back({t_ns, T_w_b});
+    }
+    result_.map = drawMap(configuration_.map, material);
+  }
+
   void count(const WindowUpdate& update) {
     OdometryStatistics& s = result_.statistics;
     const double t_s = 1e-9 * static_cast<double>(update.t_ns - s.first_frame_ns);
@@ -82,6 +100,7 @@ class BackEnd {
   }
 
   Rig rig_;
+  const Configuration& configuration_;
   Estimator estimator_;
   MapBuilder map_;
   const OdometryObserver& observer_;
@@ -144,7 +163,7 @@ void runOnTwoThreads(FirstHalf& first, BackEnd& back) {
 }  // namespace
 
 OdometryResult runOdometry(Recording& recording, const Configuration& configuration, int threads,
-                           const OdometryObserver& observer) {
+                           const OdometryObserver& observer, const RefinementProgress& refining) {
   OdometryResult result;
   FirstHalf first(recording, configuration, result);
   BackEnd back(recording.rig(), configuration, observer, result);
@@ -153,7 +172,7 @@ OdometryResult runOdometry(Recording& recording, const Configuration& configurat
   } else {
     while (auto frame = first.next()) back.process(*frame);
   }
-  back.finish();
+  back.finish(refining);
   result.statistics.front_end = first.statistics();
   return result;
 }

@@ -8,6 +8,7 @@
 #include "Configuration.h"
 #include "StageClock.h"
 #include "lintel/estimator/Estimator.h"
+#include "lintel/mapping/BatchRefinement.h"
 #include "lintel/mapping/LineMap.h"
 #include "lintel/sensing/Recording.h"
 #include "lintel/tracking/FrontEndStatistics.h"
@@ -28,12 +29,14 @@ struct OdometryStatistics {
   double mean_points_used = 0, mean_lines_tracked = 0, mean_lines_used = 0, mean_lines_degenerate = 0;
   std::vector<std::string> failures;  ///< time and reason of each reset
   std::string last_wait;              ///< what initialisation waited for last
-  StageClock decoding, tracking, estimation;
+  StageClock decoding, tracking, estimation, refinement;
   FrontEndStatistics front_end;
 };
 
 struct OdometryResult {
-  std::vector<OdometryPose> trajectory;
+  std::vector<OdometryPose> trajectory;          ///< causal
+  std::vector<OdometryPose> refined_trajectory;  ///< empty when there was no refinement or it was not accepted
+  RefinementReport refinement;
   LineMap map;
   Rig rig;  ///< as refined
   double time_offset_s = 0;
@@ -46,7 +49,8 @@ using OdometryObserver = std::function<void(const Frame&, const FrameTracks&, co
 
 /// Recording in, trajectory and map out. With `threads` > 1 tracking runs on a thread of its own; the result does not
 /// depend on it. A recording that breaks off gives what was computed until then, with `error` set.
+/// `refining` is told how much of the refinement after the last frame is done.
 OdometryResult runOdometry(Recording& recording, const Configuration& configuration, int threads,
-                           const OdometryObserver& observer);
+                           const OdometryObserver& observer, const RefinementProgress& refining = {});
 
 }  // namespace lintel

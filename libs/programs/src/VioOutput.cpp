@@ -31,7 +31,8 @@ Json stageJson(std::vector<double> ms) {
 Json stagesJson(const OdometryStatistics& s) {
   Json stages{{"decoding", stageJson(s.decoding.ms())},
               {"tracking", stageJson(s.tracking.ms())},
-              {"estimation", stageJson(s.estimation.ms())}};
+              {"estimation", stageJson(s.estimation.ms())},
+              {"refinement", stageJson(s.refinement.ms())}};
   for (const auto& [name, times] : s.front_end.stages)
     stages["tracking: " + name] = stageJson(std::vector<double>(times.ms.begin(), times.ms.end()));
   return stages;
@@ -52,6 +53,22 @@ Json trackingJson(const FrontEndStatistics& f) {
             {"merged", f.lines.merged},
             {"share_seen_in_10_frames", f.lines.lifetimes.shareOfAtLeast(10)},
             {"median_length", f.lines.lifetimes.median()}}}};
+}
+
+Json refinementJson(const OdometryResult& result) {
+  const RefinementReport& r = result.refinement;
+  return {{"accepted", r.accepted},
+          {"verdict", r.verdict.empty() ? "left out" : r.verdict},
+          {"iterations", r.iterations},
+          {"residuals", r.residuals},
+          {"points", r.points},
+          {"lines", r.lines},
+          {"landmarks_joined", r.merged},
+          {"cost", {r.cost_before, r.cost_after}},
+          {"held_out_points_px", {r.held_out_before_px, r.held_out_after_px}},
+          {"imu_sigmas", {r.imu_before, r.imu_after}},
+          {"moved_m", r.moved_m},
+          {"turned_rad", r.turned_rad}};
 }
 
 }  // namespace
@@ -91,6 +108,7 @@ std::string statisticsJson(const OdometryResult& result, double wall_s, const st
       {"mean_lines_degenerate", s.mean_lines_degenerate},
       {"map_points", result.map.points.size()},
       {"map_lines", result.map.lines.size()},
+      {"refinement", refinementJson(result)},
       {"calibration",
        {{"intrinsics_px", {c.fx, c.fy, c.cx, c.cy}},
         {"distortion", {c.k1, c.k2, c.p1, c.p2}},

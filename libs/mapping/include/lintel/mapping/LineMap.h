@@ -51,8 +51,15 @@ struct MapLine {
   std::int64_t first_t_ns = 0, last_t_ns = 0;
   bool degenerate = false;                       ///< its own observations leave the direction or depth open
   bool constrained = false;                      ///< direction taken from a group of parallel lines
-  int group = -1;                                ///< parallel group, -1 = none
+  int group = -1;                                ///< place in LineMap::groups, -1 = none
   std::vector<MapLineObservation> observations;  ///< ascending keyframe id
+};
+
+/// Lines that are parallel: a vanishing direction of the scene.
+struct MapGroup {
+  std::string name;                                        ///< "vertical", "horizontal 1", "slanted 1", …
+  Eigen::Vector3d direction_w = Eigen::Vector3d::UnitX();  ///< unit; the sign means nothing
+  double spread_rad = 0;                                   ///< RMS angle of the members, weighted by length
 };
 
 /// The product: keyframes, points and line segments in one world frame (z up).
@@ -63,6 +70,7 @@ struct LineMap {
   std::vector<MapKeyframe> keyframes;   ///< ascending id
   std::vector<MapPoint> points;         ///< ascending id
   std::vector<MapLine> lines;           ///< ascending id
+  std::vector<MapGroup> groups;         ///< of parallel lines, the longest in sum first
   std::vector<std::pair<std::int64_t, Pose>> trajectory;  ///< (t_ns, T_w_b) of every frame, ascending
 };
 

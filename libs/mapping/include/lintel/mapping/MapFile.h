@@ -22,4 +22,7 @@ void writeMap(const LineMap& map, const std::string& path);
 /// small multiple of the file's size whatever the bytes say.
 LineMap readMap(const std::string& path);
 
+/// The same from a file's bytes; `name` is for messages.
+LineMap mapFromBytes(const std::string& bytes, const std::string& name);
+
 }  // namespace lintel

@@ -1,0 +1,93 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "lintel/estimator/EstimatorParams.h"
+#include "lintel/mapping/MapMaterial.h"
+#include "lintel/mapping/MapParams.h"
+
+namespace lintel {
+
+/// The batch adjustment after the causal pass.
+struct RefinementParams {
+  bool enabled = true;
+  int rounds = 3;              ///< of: estimate and merge landmarks, adjust, reject outliers
+  int max_iterations = 12;     ///< of a round
+  bool lines = true;           ///< lines have residuals too; off: they follow the poses
+  int min_views = 3;           ///< keyframes that see a landmark of the adjustment
+  double line_max_sigma_direction_rad = 0.10;  ///< vaguer lines have no residuals
+  double line_max_relative_sigma = 0.10;       ///< of their distance
+  double held_out_share = 0.05;                ///< of the points: left out, to judge the result by
+  // acceptance
+  double max_moved_share = 0.05;   ///< keyframes may move by this share of the way travelled, and
+  double max_moved_m = 0.30;       ///< this much more
+  double max_turned_rad = 0.15;
+  double max_imu_error = 3.0;      ///< RMS of the IMU's residuals in standard deviations; or no worse than before
+
+  template <class F>
+  void fields(F&& field) {
+    field("enabled", enabled);
+    field("rounds", rounds);
+    field("max_iterations", max_iterations);
+    field("lines", lines);
+    field("min_views", min_views);
+    field("line_max_sigma_direction_rad", line_max_sigma_direction_rad);
+    field("line_max_relative_sigma", line_max_relative_sigma);
+    field("held_out_share", held_out_share);
+    field("max_moved_share", max_moved_share);
+    field("max_moved_m", max_moved_m);
+    field("max_turned_rad", max_turned_rad);
+    field("max_imu_error", max_imu_error);
+  }
+};
+
+/// What a refinement did, and whether it may be used.
+struct RefinementReport {
+  bool accepted = false;
+  std::string verdict;  ///< in words: why, or why not
+  int rounds = 0, iterations = 0, merged = 0;
+  std::size_t residuals = 0, points = 0, lines = 0;
+  double cost_before = 0, cost_after = 0;                        ///< robust, of the last adjustment's residuals
+  double held_out_before_px = 0, held_out_after_px = 0;          ///< median error of points that had no part in it
+  double imu_before = 0, imu_after = 0;                          ///< RMS, standard deviations
+  double moved_m = 0, turned_rad = 0;                            ///< most, of a keyframe
+};
+
+/// Told from time to time how much is done, in [0, 1].
+using RefinementProgress = std::function<void(double)>;
+
+/// Full adjustment over all keyframes: poses, velocities, biases, calibration, points and lines; IMU between consecutive
+/// keyframes; robust losses. Landmarks that turn out to be the same are joined between the rounds: what was seen again
+/// ties the trajectory together. Deterministic; one thread.
+///
+/// The result is checked (report.accepted): cost, points that had no part in the adjustment, IMU residuals, plausible
+/// changes. Whoever calls keeps what was before when it is not accepted.
+class BatchRefinement {
+ public:
+  /// `calibrated`: the rig as calibrated, before any estimate; its priors hold the calibration.
+  BatchRefinement(const Rig& calibrated, const EstimatorParams& estimator, const MapParams& map,
+                  const RefinementParams& params);
+
+  /// Refines `material` (as MapBuilder::material() gives it): keyframes, calibration, landmarks, trajectory. When the
+  /// checks fail, only its landmarks are estimated, with the poses as they were.
+  RefinementReport refine(MapMaterial& material, const RefinementProgress& progress = {}) const;
+
+ private:
+  RefinementReport adjust(MapMaterial& material, const RefinementProgress& progress) const;
+
+  Rig calibrated_;
+  EstimatorParams estimator_;
+  MapParams map_;
+  RefinementParams params_;
+};
+
+/// The refined pose of every frame of `causal.trajectory`: between two keyframes the IMU carries the refined state on,
+/// and what is missing at the next keyframe is spread over the interval (cubic: position and velocity meet at both
+/// ends); elsewhere frames move with the nearest keyframe.
+std::vector<std::pair<std::int64_t, Pose>> refinedTrajectory(const MapMaterial& causal,
+                                                             const std::vector<RetiredKeyframe>& refined);
+
+}  // namespace lintel

@@ -1,0 +1,73 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <Eigen/Core>
+#include <cstdint>
+#include <utility>
+#include <vector>
+
+#include "lintel/estimator/WindowUpdate.h"
+#include "lintel/sensing/Rig.h"
+
+namespace lintel {
+
+/// Where a keyframe saw a point. Views keep only what cannot be computed again: an hour has millions of them.
+struct PointView {
+  FrameId keyframe = 0;
+  Eigen::Vector2d px = Eigen::Vector2d::Zero();
+  bool inlier = true;  ///< agrees with the estimate
+};
+
+/// Where a keyframe saw a line.
+struct LineView {
+  FrameId keyframe = 0;
+  TrackId track = 0;  ///< that it belonged to: a merged line has several
+  Eigen::Vector2d start_px = Eigen::Vector2d::Zero(), end_px = Eigen::Vector2d::Zero();
+  float sigma_px = 1;
+  bool inlier = true;
+};
+
+/// A point and all its views.
+struct PointRecord {
+  TrackId id = 0;
+  bool known = false;  ///< `p_w` is an estimate
+  Eigen::Vector3d p_w = Eigen::Vector3d::Zero();
+  double sigma_distance_m = 0;  ///< along the ray it was seen on
+  double error_px = 0;          ///< mean over the inliers
+  std::vector<PointView> views;
+};
+
+/// An infinite line near where it was seen: a point in the middle of what was seen and a unit direction, with the
+/// covariance of (position, direction) in the two directions across it, `tangentBasis(direction_w)`.
+struct LineEstimate {
+  Eigen::Vector3d middle_w = Eigen::Vector3d::Zero(), direction_w = Eigen::Vector3d::UnitX();
+  Eigen::Matrix4d covariance = Eigen::Matrix4d::Zero();
+
+  double sigmaDirection() const;               ///< worst way [rad]
+  double sigmaPosition(double along_m) const;  ///< worst way across, that far from the middle [m]
+};
+
+/// A line and all its views.
+struct LineRecord {
+  TrackId id = 0;
+  bool known = false;  ///< `estimate` is one
+  LineEstimate estimate;
+  double error_px = 0;    ///< mean distance of the inliers' ends from the projected line
+  double distance_m = 0;  ///< from which it was seen, median
+  int group = -1;         ///< of parallel lines, -1 = none
+  bool constrained = false;
+  std::vector<LineView> views;
+};
+
+/// What a run leaves behind for the map: all keyframes, points and lines with their views, and the causal trajectory.
+/// Grows with what was seen, not with the number of frames.
+struct MapMaterial {
+  Rig rig;                  ///< calibration that the poses belong to
+  double time_offset_s = 0; ///< an image with stamp t shows the world at t + offset
+  std::vector<RetiredKeyframe> keyframes;  ///< ascending id and time
+  std::vector<PointRecord> points;
+  std::vector<LineRecord> lines;
+  std::vector<std::pair<std::int64_t, Pose>> trajectory;  ///< (t_ns, T_w_b) of every frame with a pose, ascending
+};
+
+}  // namespace lintel

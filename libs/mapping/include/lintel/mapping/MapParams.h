@@ -1,0 +1,82 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+namespace lintel {
+
+/// When landmarks are the same.
+struct MergeParams {
+  bool lines = true;
+  bool points = true;                 ///< tracks that broke: joins what was seen again
+  double max_angle_rad = 0.06;        ///< between two pieces of one line
+  double max_offset_m = 0.10;         ///< across, and
+  double max_relative_offset = 0.02;  ///< of the distance they were seen from: the larger one counts
+  double max_gap_m = 0.10;            ///< along, between two pieces, and
+  double max_relative_gap = 0.10;     ///< of the shorter one's length
+  double max_error_px = 1.2;          ///< mean error of all views when joined
+  double min_separation_px = 2.5;     ///< lines seen side by side in one image, farther apart, are two lines
+  double point_max_error_px = 1.0;    ///< mean error of all views of a joined point
+
+  template <class F>
+  void fields(F&& field) {
+    field("lines", lines);
+    field("points", points);
+    field("max_angle_rad", max_angle_rad);
+    field("max_offset_m", max_offset_m);
+    field("max_relative_offset", max_relative_offset);
+    field("max_gap_m", max_gap_m);
+    field("max_relative_gap", max_relative_gap);
+    field("max_error_px", max_error_px);
+    field("min_separation_px", min_separation_px);
+    field("point_max_error_px", point_max_error_px);
+  }
+};
+
+/// Parallel groups.
+struct GroupParams {
+  double max_angle_rad = 0.05;  ///< of a member from the group's direction
+  int min_lines = 5;
+  double min_share = 0.03;      ///< of the map's length
+
+  template <class F>
+  void fields(F&& field) {
+    field("max_angle_rad", max_angle_rad);
+    field("min_lines", min_lines);
+    field("min_share", min_share);
+  }
+};
+
+/// What becomes part of the map.
+struct MapParams {
+  int min_observations = 3;           ///< keyframes that saw a point or line
+  double min_length_m = 0.05;         ///< of a segment
+  double min_depth_m = 0.1;           ///< nearer things are none
+  double max_error_px = 1.5;          ///< mean distance of the views from the projected line
+  double view_max_error_px = 3.0;     ///< a view farther off is an outlier
+  double min_inlier_share = 0.6;      ///< of a line's views
+  double max_sigma_direction_rad = 0.10;
+  double max_sigma_m = 0.03;          ///< of a segment's ends, across it, and
+  double max_relative_sigma = 0.02;   ///< the same relative to the distance it was seen from
+  double point_max_relative_sigma = 0.20;
+  double coverage = 0.2;              ///< a piece of a line is drawn when this share of a track's views (and two) saw it
+  MergeParams merge;
+  GroupParams groups;
+
+  template <class F>
+  void fields(F&& field) {
+    field("min_observations", min_observations);
+    field("min_length_m", min_length_m);
+    field("min_depth_m", min_depth_m);
+    field("max_error_px", max_error_px);
+    field("view_max_error_px", view_max_error_px);
+    field("min_inlier_share", min_inlier_share);
+    field("max_sigma_direction_rad", max_sigma_direction_rad);
+    field("max_sigma_m", max_sigma_m);
+    field("max_relative_sigma", max_relative_sigma);
+    field("point_max_relative_sigma", point_max_relative_sigma);
+    field("coverage", coverage);
+    field("merge", merge);
+    field("groups", groups);
+  }
+};
+
+}  // namespace lintel

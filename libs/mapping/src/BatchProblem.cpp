@@ -1,0 +1,284 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "BatchProblem.h"
+
+#include <ceres/iteration_callback.h>
+#include <ceres/ordered_groups.h>
+#include <ceres/solver.h>
+
+#include <cmath>
+#include <limits>
+
+#include "KeyframeCameras.h"
+
+namespace lintel {
+
+namespace {
+
+ceres::Problem::Options problemOptions() {
+  ceres::Problem::Options o;
+  o.cost_function_ownership = ceres::DO_NOT_TAKE_OWNERSHIP;
+  o.loss_function_ownership = ceres::DO_NOT_TAKE_OWNERSHIP;
+  o.manifold_ownership = ceres::DO_NOT_TAKE_OWNERSHIP;
+  o.disable_all_safety_checks = true;
+  return o;
+}
+
+const std::shared_ptr<const StateManifold>& poseManifold() {
+  static const std::shared_ptr<const StateManifold> manifold = std::make_shared<PoseManifold>();
+  return manifold;
+}
+const std::shared_ptr<const StateManifold>& motionManifold() {
+  static const std::shared_ptr<const StateManifold> manifold = std::make_shared<VectorManifold>(kMotionSize);
+  return manifold;
+}
+const std::shared_ptr<const StateManifold>& correctionManifold() {
+  static const std::shared_ptr<const StateManifold> manifold = std::make_shared<VectorManifold>(kCorrectionSize);
+  return manifold;
+}
+StateManifold* lineManifold() {
+  static LineManifold manifold;
+  return &manifold;
+}
+
+CorrectionBlock correctionOf(const PinholeRadtan& camera, const PinholeRadtan& calibrated, double time_offset_s) {
+  CorrectionBlock c;
+  c << camera.fx - calibrated.fx, camera.fy - calibrated.fy, camera.cx - calibrated.cx, camera.cy - calibrated.cy,
+      camera.k1 - calibrated.k1, camera.k2 - calibrated.k2, time_offset_s;
+  return c;
+}
+
+/// Holds the length of a homogeneous point, which nothing observes. Instead of a manifold: all landmarks then have
+/// tangents of four and residuals of two, for which Ceres has code of fixed size (and hence the second, empty residual).
+class UnitLength final : public ceres::SizedCostFunction<2, kPointSize> {
+ public:
+  bool Evaluate(double const* const* parameters, double* residuals, double** jacobians) const override {
+    constexpr double kWeight = 100;
+    const Eigen::Map<const PointBlock> x(parameters[0]);
+    residuals[0] = kWeight * (x.squaredNorm() - 1);
+    residuals[1] = 0;
+    if (jacobians && jacobians[0]) {
+      Eigen::Map<Eigen::Matrix<double, 2, kPointSize, Eigen::RowMajor>> J(jacobians[0]);
+      J << 2 * kWeight * x.transpose(), Eigen::RowVector4d::Zero();
+    }
+    return true;
+  }
+};
+
+class ProgressCallback : public ceres::IterationCallback {
+ public:
+  explicit ProgressCallback(const std::function<void(int)>& progress) : progress_(progress) {}
+  ceres::CallbackReturnType operator()(const ceres::IterationSummary& summary) override {
+    if (progress_) progress_(summary.iteration);
+    return ceres::SOLVER_CONTINUE;
+  }
+
+ private:
+  const std::function<void(int)>& progress_;
+};
+
+}  // namespace
+
+BatchProblem::BatchProblem(const Rig& calibrated, const EstimatorParams& estimator, MapMaterial& material,
+                           const std::vector<bool>& use_point, const std::vector<bool>& use_line)
+    : calibrated_(calibrated), estimator_(estimator), material_(material),
+      point_loss_(estimator.factors.point_loss_width), line_loss_(estimator.factors.line_loss_width),
+      problem_(std::make_unique<ceres::Problem>(problemOptions())) {
+  for (std::size_t i = 0; i < material.points.size(); ++i)
+    if (use_point[i]) points_.push_back(i);
+  for (std::size_t i = 0; i < material.lines.size(); ++i)
+    if (use_line[i]) lines_.push_back(i);
+  for (std::size_t k = 0; k < material.keyframes.size(); ++k) {
+    const FrameId id = material.keyframes[k].id;
+    if (id >= keyframe_places_.size()) keyframe_places_.resize(id + 1, -1);
+    keyframe_places_[id] = static_cast<std::int64_t>(k);
+  }
+  placeBlocks();
+  addPriors();
+  addImu();
+  addPoints();
+  addLines();
+}
+
+Eigen::Vector3d BatchProblem::originOf(FrameId keyframe) const {
+  const RetiredKeyframe& k = material_.keyframes[static_cast<std::size_t>(keyframe_places_[keyframe])];
+  return k.T_w_b * material_.rig.T_b_c.p;
+}
+
+void BatchProblem::placeBlocks() {
+  lines_at_ = points_.size() * kPointSize;
+  extrinsics_at_ = lines_at_ + lines_.size() * kLineSize;
+  correction_at_ = extrinsics_at_ + kPoseSize;
+  keyframes_at_ = correction_at_ + kCorrectionSize;
+  values_.resize(keyframes_at_ + material_.keyframes.size() * (kPoseSize + kMotionSize));
+
+  for (std::size_t i = 0; i < points_.size(); ++i) {
+    const PointRecord& point = material_.points[points_[i]];
+    PointBlock block;
+    block << point.p_w - originOf(point.views.front().keyframe), 1;
+    Eigen::Map<PointBlock>(at(points_at_ + i * kPointSize)) = block.normalized();
+    problem_->AddParameterBlock(at(points_at_ + i * kPointSize), kPointSize);
+  }
+  for (std::size_t i = 0; i < lines_.size(); ++i) {
+    const LineRecord& line = material_.lines[lines_[i]];
+    const Eigen::Vector3d p = line.estimate.middle_w - originOf(line.views.front().keyframe);
+    Eigen::Map<LineBlock>(at(lines_at_ + i * kLineSize)) =
+        toBlock(toOrthonormal({p.cross(line.estimate.direction_w), line.estimate.direction_w}));
+    problem_->AddParameterBlock(at(lines_at_ + i * kLineSize), kLineSize, lineManifold());
+  }
+  auto* pose = const_cast<StateManifold*>(poseManifold().get());
+  Eigen::Map<PoseBlock>(at(extrinsics_at_)) = toBlock(material_.rig.T_b_c);
+  problem_->AddParameterBlock(at(extrinsics_at_), kPoseSize, pose);
+  Eigen::Map<CorrectionBlock>(at(correction_at_)) =
+      correctionOf(material_.rig.camera, calibrated_.camera, material_.time_offset_s);
+  problem_->AddParameterBlock(at(correction_at_), kCorrectionSize);
+  for (std::size_t k = 0; k < material_.keyframes.size(); ++k) {
+    const RetiredKeyframe& keyframe = material_.keyframes[k];
+    Eigen::Map<PoseBlock>(at(poseAt(k))) = toBlock(keyframe.T_w_b);
+    Eigen::Map<MotionBlock>(at(motionAt(k))) << keyframe.v_w_b, keyframe.bias.gyro, keyframe.bias.accel;
+    problem_->AddParameterBlock(at(poseAt(k)), kPoseSize, pose);
+    problem_->AddParameterBlock(at(motionAt(k)), kMotionSize);
+  }
+}
+
+void BatchProblem::addPriors() {
+  const auto add = [&](std::unique_ptr<ceres::CostFunction> cost, std::size_t block) {
+    problem_->AddResidualBlock(cost.get(), nullptr, at(block));
+    priors_.push_back(std::move(cost));
+  };
+  const CalibrationParams& c = estimator_.calibration;
+  constexpr double kFixed = 1e-9;
+  Eigen::VectorXd sigma(kPoseTangent);
+  sigma << Eigen::Vector3d::Constant(c.refine_extrinsics ? c.extrinsic_translation_sigma_m : kFixed),
+      Eigen::Vector3d::Constant(c.refine_extrinsics ? c.extrinsic_rotation_sigma_rad : kFixed);
+  add(makeBlockPrior(poseManifold(), toBlock(calibrated_.T_b_c), sigma), extrinsics_at_);
+  Eigen::VectorXd correction(kCorrectionSize);
+  correction << c.focal_sigma_px, c.focal_sigma_px, c.centre_sigma_px, c.centre_sigma_px, c.distortion_sigma,
+      c.distortion_sigma, c.time_offset_sigma_s;
+  if (!c.refine_camera) correction.head<kTimeOffsetAt>().setConstant(kFixed);
+  if (!c.refine_time_offset) correction[kTimeOffsetAt] = kFixed;
+  add(makeBlockPrior(correctionManifold(), CorrectionBlock::Zero(), correction), correction_at_);
+
+  const double free = std::numeric_limits<double>::infinity();
+  for (std::size_t k = 0; k < material_.keyframes.size(); ++k) {
+    const RetiredKeyframe& keyframe = material_.keyframes[k];
+    if (keyframe.at_rest) {
+      Eigen::VectorXd rest = Eigen::VectorXd::Constant(kMotionSize, free);
+      rest.segment<3>(kVelocityAt).setConstant(estimator_.rest_velocity_sigma);
+      add(makeBlockPrior(motionManifold(), MotionBlock::Zero(), rest), motionAt(k));
+    }
+    if (keyframe.imu && k > 0) continue;
+    // the first of a run: its place and yaw are free to choose, its biases are known about
+    constexpr double kWeight = 1e3;
+    Eigen::MatrixXd A = Eigen::MatrixXd::Zero(4, kPoseTangent);
+    A.topLeftCorner<3, 3>() = Eigen::Matrix3d::Identity() * kWeight;
+    A.block<1, 3>(3, 3) = Eigen::RowVector3d::UnitZ() * keyframe.T_w_b.R() * kWeight;
+    std::vector<PriorBlock> blocks{{poseManifold(), toBlock(keyframe.T_w_b)}};
+    add(std::make_unique<PriorFactor>(std::move(blocks), std::move(A), Eigen::VectorXd::Zero(4)), poseAt(k));
+    Eigen::VectorXd biases = Eigen::VectorXd::Constant(kMotionSize, free);
+    biases.segment<3>(kBiasGyroAt).setConstant(estimator_.initializer.bias_gyro_sigma);
+    biases.segment<3>(kBiasAccelAt).setConstant(estimator_.initializer.bias_accel_sigma);
+    add(makeBlockPrior(motionManifold(), MotionBlock::Zero(), biases), motionAt(k));
+  }
+}
+
+void BatchProblem::addImu() {
+  for (std::size_t k = 1; k < material_.keyframes.size(); ++k) {
+    const RetiredKeyframe& keyframe = material_.keyframes[k];
+    if (!keyframe.imu || keyframe.imu->dt_s() <= 0) continue;
+    auto imu = std::make_shared<Preintegration>(*keyframe.imu);
+    imu->repropagate(material_.keyframes[k - 1].bias);
+    imu_factors_.emplace_back(k, std::make_unique<ImuFactor>(imu));
+    problem_->AddResidualBlock(imu_factors_.back().second.get(), nullptr, at(poseAt(k - 1)), at(motionAt(k - 1)),
+                               at(poseAt(k)), at(motionAt(k)));
+  }
+}
+
+void BatchProblem::addPoints() {
+  priors_.push_back(std::make_unique<UnitLength>());
+  ceres::CostFunction* unit_length = priors_.back().get();
+  for (std::size_t i = 0; i < points_.size(); ++i) {
+    const PointRecord& point = material_.points[points_[i]];
+    const Eigen::Vector3d origin_w = originOf(point.views.front().keyframe);
+    problem_->AddResidualBlock(unit_length, nullptr, at(points_at_ + i * kPointSize));
+    for (const PointView& v : point.views) {
+      if (!v.inlier) continue;
+      const auto k = static_cast<std::size_t>(keyframe_places_[v.keyframe]);
+      point_factors_.emplace_back(v.px, calibrated_.camera, motionOf(material_.keyframes[k]), origin_w,
+                                  estimator_.factors.point_sigma_px);
+      problem_->AddResidualBlock(&point_factors_.back(), &point_loss_, at(poseAt(k)), at(extrinsics_at_),
+                                 at(correction_at_), at(points_at_ + i * kPointSize));
+    }
+  }
+}
+
+void BatchProblem::addLines() {
+  const double focal = calibrated_.camera.meanFocal() / estimator_.factors.line_sigma_px;
+  for (std::size_t i = 0; i < lines_.size(); ++i) {
+    const LineRecord& line = material_.lines[lines_[i]];
+    const Eigen::Vector3d origin_w = originOf(line.views.front().keyframe);
+    for (const LineView& v : line.views) {
+      if (!v.inlier) continue;
+      const auto k = static_cast<std::size_t>(keyframe_places_[v.keyframe]);
+      const auto seen = [&](const Eigen::Vector2d& px) {
+        return makeObservation(calibrated_.camera, calibrated_.camera.normalise(px));
+      };
+      line_factors_.emplace_back(seen(v.start_px), seen(v.end_px), motionOf(material_.keyframes[k]), origin_w,
+                                 focal / std::max(0.1, static_cast<double>(v.sigma_px)));
+      problem_->AddResidualBlock(&line_factors_.back(), &line_loss_, at(poseAt(k)), at(extrinsics_at_),
+                                 at(correction_at_), at(lines_at_ + i * kLineSize));
+    }
+  }
+}
+
+BatchProblem::Summary BatchProblem::solve(int max_iterations, double tolerance, const std::function<void(int)>& progress) {
+  auto ordering = std::make_shared<ceres::ParameterBlockOrdering>();
+  for (std::size_t i = 0; i < points_.size(); ++i) ordering->AddElementToGroup(at(points_at_ + i * kPointSize), 0);
+  for (std::size_t i = 0; i < lines_.size(); ++i) ordering->AddElementToGroup(at(lines_at_ + i * kLineSize), 0);
+  ordering->AddElementToGroup(at(extrinsics_at_), 1);
+  ordering->AddElementToGroup(at(correction_at_), 1);
+  for (std::size_t k = 0; k < material_.keyframes.size(); ++k) {
+    ordering->AddElementToGroup(at(poseAt(k)), 1);
+    ordering->AddElementToGroup(at(motionAt(k)), 1);
+  }
+  ceres::Solver::Options options;
+  options.linear_solver_type = ceres::SPARSE_SCHUR;
+  options.linear_solver_ordering = ordering;
+  options.max_num_iterations = max_iterations;
+  options.function_tolerance = tolerance;
+  options.num_threads = 1;
+  options.logging_type = ceres::SILENT;
+  ProgressCallback callback(progress);
+  options.callbacks.push_back(&callback);
+  ceres::Solver::Summary summary;
+  ceres::Solve(options, problem_.get(), &summary);
+  return {summary.IsSolutionUsable(), static_cast<int>(summary.iterations.size()),
+          static_cast<std::size_t>(summary.num_residuals), summary.initial_cost, summary.final_cost};
+}
+
+void BatchProblem::writeBack() {
+  material_.rig.T_b_c = poseFromBlock(at(extrinsics_at_));
+  material_.rig.T_b_c.q.normalize();
+  material_.rig.camera = correctedCamera(calibrated_.camera, at(correction_at_));
+  material_.time_offset_s = at(correction_at_)[kTimeOffsetAt];
+  for (std::size_t k = 0; k < material_.keyframes.size(); ++k) {
+    RetiredKeyframe& keyframe = material_.keyframes[k];
+    keyframe.T_w_b = poseFromBlock(at(poseAt(k)));
+    keyframe.T_w_b.q.normalize();
+    keyframe.v_w_b = velocityOf(at(motionAt(k)));
+    keyframe.bias = biasOf(at(motionAt(k)));
+  }
+}
+
+double BatchProblem::imuError() const {
+  double sum = 0;
+  for (const auto& [k, factor] : imu_factors_) {
+    const double* blocks[] = {values_.data() + poseAt(k - 1), values_.data() + motionAt(k - 1),
+                              values_.data() + poseAt(k), values_.data() + motionAt(k)};
+    Eigen::Matrix<double, 15, 1> r;
+    factor->Evaluate(blocks, r.data(), nullptr);
+    sum += r.head<9>().squaredNorm();
+  }
+  return imu_factors_.empty() ? 0 : std::sqrt(sum / (9.0 * static_cast<double>(imu_factors_.size())));
+}
+
+}  // namespace lintel

@@ -1,0 +1,74 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <ceres/loss_function.h>
+#include <ceres/problem.h>
+
+#include <deque>
+#include <functional>
+#include <memory>
+#include <vector>
+
+#include "lintel/factors/ImuFactor.h"
+#include "lintel/factors/LineFactor.h"
+#include "lintel/factors/Manifolds.h"
+#include "lintel/factors/PointFactor.h"
+#include "lintel/factors/PriorFactors.h"
+#include "lintel/mapping/BatchRefinement.h"
+
+namespace lintel {
+
+/// One adjustment as a Ceres problem: makes blocks and residuals from a material, solves, writes back.
+///
+/// Ceres orders blocks by their addresses: all lie in one array (points, lines, calibration, keyframes in their order),
+/// so that the same sums are made in the same order every run.
+class BatchProblem {
+ public:
+  /// `use_point`, `use_line`: which landmarks take part, by place in the material.
+  BatchProblem(const Rig& calibrated, const EstimatorParams& estimator, MapMaterial& material,
+               const std::vector<bool>& use_point, const std::vector<bool>& use_line);
+
+  struct Summary {
+    bool usable = false;
+    int iterations = 0;
+    std::size_t residuals = 0;
+    double cost_before = 0, cost_after = 0;
+  };
+  /// Ends when an iteration lowers the cost by less than `tolerance` of it. `progress` is called after every iteration with their number.
+  Summary solve(int max_iterations, double tolerance, const std::function<void(int)>& progress);
+
+  /// Keyframes and calibration as solved, into the material. Landmarks are estimated anew by MapFitting.
+  void writeBack();
+
+  /// RMS of the IMU residuals without the biases' walks, in standard deviations, at the blocks' present values.
+  double imuError() const;
+
+ private:
+  double* at(std::size_t offset) { return values_.data() + offset; }
+  void placeBlocks();
+  void addPriors();
+  void addImu();
+  void addPoints();
+  void addLines();
+  Eigen::Vector3d originOf(FrameId keyframe) const;
+
+  std::size_t poseAt(std::size_t k) const { return keyframes_at_ + k * (kPoseSize + kMotionSize); }
+  std::size_t motionAt(std::size_t k) const { return poseAt(k) + kPoseSize; }
+
+  Rig calibrated_;
+  const EstimatorParams& estimator_;
+  MapMaterial& material_;
+  std::vector<std::size_t> points_, lines_;     // places in the material
+  std::vector<std::int64_t> keyframe_places_;   // by id
+  std::vector<double> values_;
+  std::size_t points_at_ = 0, lines_at_ = 0, extrinsics_at_ = 0, correction_at_ = 0, keyframes_at_ = 0;
+
+  ceres::CauchyLoss point_loss_, line_loss_;
+  std::deque<PointFactor> point_factors_;
+  std::deque<LineFactor> line_factors_;
+  std::vector<std::pair<std::size_t, std::unique_ptr<ImuFactor>>> imu_factors_;  // with the later keyframe's place
+  std::vector<std::unique_ptr<ceres::CostFunction>> priors_;
+  std::unique_ptr<ceres::Problem> problem_;
+};
+
+}  // namespace lintel

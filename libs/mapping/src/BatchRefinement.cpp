@@ -1,0 +1,177 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "lintel/mapping/BatchRefinement.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+
+#include "BatchProblem.h"
+#include "LineExtent.h"
+#include "MapFitting.h"
+#include "lintel/mapping/MapBuilder.h"
+#include "lintel/geometry/Rotation.h"
+
+namespace lintel {
+
+namespace {
+
+/// Every n-th point track has no part in the adjustment and judges it.
+bool isHeldOut(const PointRecord& point, double share) {
+  const auto period = static_cast<std::uint64_t>(std::lround(1 / std::max(share, 1e-6)));
+  return share > 0 && point.id % std::max<std::uint64_t>(2, period) == 1;
+}
+
+std::size_t inliersOf(const PointRecord& point) {
+  return static_cast<std::size_t>(
+      std::count_if(point.views.begin(), point.views.end(), [](const PointView& v) { return v.inlier; }));
+}
+
+/// Median over the held-out points of their mean error, estimated with the given cameras.
+double heldOutError(const MapParams& map, const MapMaterial& cameras_of, std::vector<PointRecord> points, int min_views) {
+  const KeyframeCameras cameras(cameras_of);
+  PointFitParams fit;
+  fit.max_error_px = 1e3;  // all views count: a result must not look good by calling them outliers
+  fit.min_depth_m = map.min_depth_m;
+  std::vector<double> errors;
+  for (PointRecord& point : points) {
+    if (static_cast<int>(point.views.size()) < min_views) continue;
+    point.known = false;
+    errors.push_back(fitPoint(cameras, fit, point) ? point.error_px : fit.max_error_px);
+  }
+  if (errors.empty()) return 0;
+  std::nth_element(errors.begin(), errors.begin() + static_cast<std::ptrdiff_t>(errors.size() / 2), errors.end());
+  return errors[errors.size() / 2];
+}
+
+/// How far keyframes moved; every run about its own first keyframe, which is held.
+void measureChange(const MapMaterial& before, const MapMaterial& after, RefinementReport& report, double& travelled_m) {
+  travelled_m = 0;
+  for (std::size_t k = 0; k < before.keyframes.size(); ++k) {
+    const Pose &T0 = before.keyframes[k].T_w_b, &T1 = after.keyframes[k].T_w_b;
+    if (k > 0 && before.keyframes[k].imu) travelled_m += (T0.p - before.keyframes[k - 1].T_w_b.p).norm();
+    report.moved_m = std::max(report.moved_m, (T1.p - T0.p).norm());
+    report.turned_rad = std::max(report.turned_rad, logRotation(T0.q.conjugate() * T1.q).norm());
+  }
+}
+
+bool isFinite(const MapMaterial& material) {
+  return material.rig.T_b_c.p.allFinite() && std::isfinite(material.rig.camera.fx) &&
+         std::all_of(material.keyframes.begin(), material.keyframes.end(), [](const RetiredKeyframe& k) {
+           return k.T_w_b.p.allFinite() && k.T_w_b.q.coeffs().allFinite() && k.v_w_b.allFinite();
+         });
+}
+
+template <class... Args>
+std::string text(const char* format, Args... args) {
+  char buffer[256];
+  std::snprintf(buffer, sizeof buffer, format, args...);
+  return buffer;
+}
+
+/// Why the result must not be used; empty when it may.
+std::string objection(const MapMaterial& after, const EstimatorParams& estimator, const RefinementParams& params,
+                      const RefinementReport& report, double travelled_m) {
+  if (!isFinite(after)) return "the adjustment diverged";
+  if (!(report.cost_after <= report.cost_before)) return "the adjustment did not lower its cost";
+  if (report.held_out_after_px > 1.02 * report.held_out_before_px + 0.01)
+    return text("points that had no part in it fit worse (%.3f px, before %.3f px)", report.held_out_after_px,
+                report.held_out_before_px);
+  if (report.imu_after > std::max(params.max_imu_error, report.imu_before))
+    return text("the IMU contradicts it (%.1f standard deviations)", report.imu_after);
+  if (report.moved_m > params.max_moved_m + params.max_moved_share * travelled_m)
+    return text("a keyframe moved by %.2f m", report.moved_m);
+  if (report.turned_rad > params.max_turned_rad) return text("a keyframe turned by %.3f rad", report.turned_rad);
+  for (const RetiredKeyframe& k : after.keyframes)
+    if (k.bias.accel.norm() > estimator.failure.max_bias_accel || k.bias.gyro.norm() > estimator.failure.max_bias_gyro)
+      return "an IMU bias is implausible";
+  return {};
+}
+
+}  // namespace
+
+BatchRefinement::BatchRefinement(const Rig& calibrated, const EstimatorParams& estimator, const MapParams& map,
+                                 const RefinementParams& params)
+    : calibrated_(calibrated), estimator_(estimator), map_(map), params_(params) {}
+
+RefinementReport BatchRefinement::refine(MapMaterial& material, const RefinementProgress& progress) const {
+  RefinementReport report;
+  MapMaterial refined = material;
+  if (material.keyframes.size() < 3) {
+    report.verdict = "not refined: fewer than three keyframes";
+  } else {
+    report = adjust(refined, progress);
+  }
+  if (report.accepted) {
+    refined.trajectory = refinedTrajectory(material, refined.keyframes);
+    material = std::move(refined);
+  } else {
+    prepareMaterial(map_, material);
+  }
+  if (progress) progress(1);
+  return report;
+}
+
+RefinementReport BatchRefinement::adjust(MapMaterial& material, const RefinementProgress& progress) const {
+  RefinementReport report;
+  const MapMaterial before = material;
+  std::vector<PointRecord> held_out;
+  for (const PointRecord& point : material.points)
+    if (isHeldOut(point, params_.held_out_share)) held_out.push_back(point);
+  material.points.erase(std::remove_if(material.points.begin(), material.points.end(),
+                                       [&](const PointRecord& p) { return isHeldOut(p, params_.held_out_share); }),
+                        material.points.end());
+
+  for (int round = 0; round < params_.rounds; ++round) {
+    MapFitting fitting(map_, material);
+    fitting.fitAll();
+    // The causal poses drifted: what is the same comes together only after a first adjustment.
+    if (round > 0) report.merged += fitting.merge();
+    std::vector<bool> use_point, use_line;
+    for (const PointRecord& p : material.points)
+      use_point.push_back(p.known && static_cast<int>(inliersOf(p)) >= params_.min_views);
+    for (const LineRecord& l : material.lines)
+      use_line.push_back(params_.lines && l.known && keyframesOf(l) >= params_.min_views &&
+                         l.estimate.sigmaDirection() <= params_.line_max_sigma_direction_rad &&
+                         l.estimate.sigmaPosition(0) <= params_.line_max_relative_sigma * l.distance_m);
+    BatchProblem problem(calibrated_, estimator_, material, use_point, use_line);
+    if (round == 0) report.imu_before = problem.imuError();
+    // landmarks are chosen and judged anew after every round but the last: those need not converge
+    const bool last = round + 1 == params_.rounds;
+    const auto summary = problem.solve(params_.max_iterations, last ? 1e-4 : 1e-2, [&](int iteration) {
+      if (progress) progress((round + std::min(1.0, static_cast<double>(iteration) / params_.max_iterations)) / params_.rounds);
+    });
+    if (!summary.usable) {
+      report.verdict = "not refined: the adjustment found no solution";
+      return report;
+    }
+    if (round == 0) report.cost_before = summary.cost_before;
+    report.cost_after = summary.cost_after;
+    if (round > 0) report.cost_before = summary.cost_before;
+    report.imu_after = problem.imuError();
+    report.iterations += summary.iterations;
+    report.residuals = summary.residuals;
+    report.points = static_cast<std::size_t>(std::count(use_point.begin(), use_point.end(), true));
+    report.lines = static_cast<std::size_t>(std::count(use_line.begin(), use_line.end(), true));
+    problem.writeBack();
+    ++report.rounds;
+  }
+  double travelled_m = 0;
+  measureChange(before, material, report, travelled_m);
+  report.held_out_before_px = heldOutError(map_, before, held_out, params_.min_views);
+  report.held_out_after_px = heldOutError(map_, material, held_out, params_.min_views);
+  const std::string reason = objection(material, estimator_, params_, report, travelled_m);
+  report.accepted = reason.empty();
+  if (!report.accepted) {
+    report.verdict = "not refined: " + reason;
+    return report;
+  }
+  report.verdict = text("refined: keyframes moved by up to %.3f m; points without part in it fit to %.2f px (before %.2f)",
+                        report.moved_m, report.held_out_after_px, report.held_out_before_px);
+  material.points.insert(material.points.end(), held_out.begin(), held_out.end());
+  std::sort(material.points.begin(), material.points.end(),
+            [](const PointRecord& a, const PointRecord& b) { return a.id < b.id; });
+  prepareMaterial(map_, material);
+  return report;
+}
+
+}  // namespace lintel

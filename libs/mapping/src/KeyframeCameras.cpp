@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "KeyframeCameras.h"
+
+#include "lintel/factors/CameraView.h"
+
+namespace lintel {
+
+FrameMotion motionOf(const RetiredKeyframe& keyframe) {
+  FrameMotion motion;
+  motion.v_b = keyframe.T_w_b.q.conjugate() * keyframe.v_w_b;
+  if (keyframe.imu && !keyframe.imu->samples().empty())
+    motion.omega_b = keyframe.imu->samples().back().gyro - keyframe.bias.gyro;
+  return motion;
+}
+
+KeyframeCameras::KeyframeCameras(const MapMaterial& material) : camera_(material.rig.camera) {
+  const PoseBlock extrinsics = toBlock(material.rig.T_b_c);
+  CorrectionBlock correction = CorrectionBlock::Zero();
+  correction[kTimeOffsetAt] = material.time_offset_s;
+  for (const RetiredKeyframe& keyframe : material.keyframes) {
+    if (keyframe.id >= places_.size()) places_.resize(keyframe.id + 1, -1);
+    places_[keyframe.id] = static_cast<std::int64_t>(T_w_c_.size());
+    const PoseBlock pose = toBlock(keyframe.T_w_b);
+    const CameraView view(pose.data(), extrinsics.data(), correction.data(), motionOf(keyframe), false);
+    T_w_c_.push_back({Eigen::Quaterniond(view.R_c_w.transpose()).normalized(), view.p_w_c});
+    R_c_w_.push_back(view.R_c_w);
+  }
+}
+
+}  // namespace lintel

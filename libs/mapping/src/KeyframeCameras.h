@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <vector>
+
+#include "lintel/factors/FrameMotion.h"
+#include "lintel/mapping/MapMaterial.h"
+
+namespace lintel {
+
+/// Where the camera was when each keyframe's image was taken.
+class KeyframeCameras {
+ public:
+  explicit KeyframeCameras(const MapMaterial& material);
+
+  bool contains(FrameId id) const { return id < places_.size() && places_[id] >= 0; }
+  std::size_t placeOf(FrameId id) const { return static_cast<std::size_t>(places_[id]); }  ///< in material.keyframes
+  const Pose& T_w_c(FrameId id) const { return T_w_c_[placeOf(id)]; }
+  const Eigen::Matrix3d& R_c_w(FrameId id) const { return R_c_w_[placeOf(id)]; }
+  const PinholeRadtan& camera() const { return camera_; }
+
+  /// (x/z, y/z, 1) of a raw pixel.
+  Eigen::Vector3d ray(const Eigen::Vector2d& px) const { return camera_.normalise(px).homogeneous(); }
+
+ private:
+  PinholeRadtan camera_;
+  std::vector<std::int64_t> places_;  // by keyframe id, -1 = none
+  std::vector<Pose> T_w_c_;
+  std::vector<Eigen::Matrix3d> R_c_w_;
+};
+
+/// How the body moves at a keyframe.
+FrameMotion motionOf(const RetiredKeyframe& keyframe);
+
+}  // namespace lintel

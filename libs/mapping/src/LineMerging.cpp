@@ -1,0 +1,187 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "LineMerging.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+#include "LineExtent.h"
+#include "SpatialIndex.h"
+#include "lintel/geometry/Segment.h"
+
+namespace lintel {
+
+namespace {
+
+constexpr double kCell_m = 0.3;
+
+struct Candidate {
+  double score = 0;
+  std::size_t a = 0, b = 0;
+  bool operator<(const Candidate& o) const { return std::tie(score, a, b) < std::tie(o.score, o.a, o.b); }
+};
+
+/// How far two image segments are apart across the first one, where they lie side by side; negative when they do not.
+double separationPx(const LineView& a, const LineView& b) {
+  const Eigen::Vector2d along = a.end_px - a.start_px;
+  const double length = along.norm();
+  if (length < 1) return -1;
+  const Eigen::Vector2d d = along / length, n(-d.y(), d.x());
+  double u0 = (b.start_px - a.start_px).dot(d), u1 = (b.end_px - a.start_px).dot(d);
+  double v0 = (b.start_px - a.start_px).dot(n), v1 = (b.end_px - a.start_px).dot(n);
+  if (u0 > u1) std::swap(u0, u1), std::swap(v0, v1);
+  const double from = std::max(0.0, u0), to = std::min(length, u1);
+  if (to - from < 0.2 * std::min(length, u1 - u0) || u1 - u0 < 1) return -1;
+  const auto across = [&](double u) { return v0 + (v1 - v0) * (u - u0) / (u1 - u0); };
+  return 0.5 * std::abs(across(from) + across(to));
+}
+
+class LineMerger {
+ public:
+  LineMerger(const KeyframeCameras& cameras, const LineFitParams& fit, const MergeParams& params,
+             std::vector<LineRecord>& lines)
+      : cameras_(cameras), fit_(fit), params_(params), lines_(lines), roots_(lines.size()), segments_(lines.size()) {
+    std::iota(roots_.begin(), roots_.end(), std::size_t{0});
+    for (std::size_t i = 0; i < lines.size(); ++i) segments_[i] = drawn(lines[i]);
+  }
+
+  int run() {
+    int merged = 0;
+    for (const Candidate& candidate : candidates()) merged += tryMerge(rootOf(candidate.a), rootOf(candidate.b));
+    std::size_t kept = 0;
+    for (std::size_t i = 0; i < lines_.size(); ++i) {
+      if (roots_[i] != i) continue;
+      if (kept != i) lines_[kept] = std::move(lines_[i]);
+      ++kept;
+    }
+    lines_.resize(kept);
+    return merged;
+  }
+
+ private:
+  static constexpr double kCoverage = 0.2;
+
+  Segment3 drawn(const LineRecord& line) const {
+    if (!line.known) return {};
+    const auto stretch = seenStretch(cameras_, line, kCoverage);
+    return stretch ? segmentOf(cameras_, line, *stretch) : Segment3{};
+  }
+
+  std::size_t rootOf(std::size_t i) const {
+    while (roots_[i] != i) i = roots_[i];
+    return i;
+  }
+
+  std::vector<Candidate> candidates() const {
+    SpatialIndex index(kCell_m);
+    constexpr int kMostSamples = 2000;
+    for (std::size_t i = 0; i < lines_.size(); ++i) {
+      const double length = segments_[i].length();
+      if (length <= 0) continue;
+      const int n = std::min(kMostSamples, 1 + static_cast<int>(2 * length / kCell_m));
+      for (int k = 0; k <= n; ++k)
+        index.add(i, segments_[i].start + (segments_[i].end - segments_[i].start) * (static_cast<double>(k) / n));
+    }
+    std::vector<Candidate> result;
+    for (const auto& [a, b] : index.pairs()) {
+      Candidate candidate{0, a, b};
+      if (near(a, b, candidate.score)) result.push_back(candidate);
+    }
+    std::sort(result.begin(), result.end());
+    return result;
+  }
+
+  /// The cheap conditions on two segments; `score`: less is more alike.
+  bool near(std::size_t a, std::size_t b, double& score) const {
+    const LineRecord &la = lines_[a], &lb = lines_[b];
+    const Segment3 &sa = segments_[a], &sb = segments_[b];
+    const double angle = lineAngle(la.estimate.direction_w, lb.estimate.direction_w);
+    const double known = 2 * std::hypot(la.estimate.sigmaDirection(), lb.estimate.sigmaDirection());
+    if (angle > std::clamp(known, 0.5 * params_.max_angle_rad, 2 * params_.max_angle_rad)) return false;
+    const bool a_longer = sa.length() >= sb.length();
+    const Segment3 &longer = a_longer ? sa : sb, &shorter = a_longer ? sb : sa;
+    const Eigen::Vector3d d = longer.direction();
+    const auto across = [&](const Eigen::Vector3d& p) { return (p - longer.start).cross(d).norm(); };
+    const double offset = across(shorter.midpoint());
+    if (offset > std::max(params_.max_offset_m, params_.max_relative_offset * std::max(la.distance_m, lb.distance_m)))
+      return false;
+    double u0 = (shorter.start - longer.start).dot(d), u1 = (shorter.end - longer.start).dot(d);
+    if (u0 > u1) std::swap(u0, u1);
+    const double gap = std::max(u0 - longer.length(), -u1);
+    if (gap > std::max(params_.max_gap_m, params_.max_relative_gap * shorter.length())) return false;
+    score = offset + angle * shorter.length() + std::max(0.0, gap);
+    return true;
+  }
+
+  /// Whether some image shows them as two.
+  bool seenApart(const LineRecord& a, const LineRecord& b) const {
+    int apart = 0, together = 0;
+    for (auto i = a.views.begin(), j = b.views.begin(); i != a.views.end() && j != b.views.end();) {
+      if (i->keyframe != j->keyframe) {
+        i->keyframe < j->keyframe ? ++i : ++j;
+        continue;
+      }
+      for (auto k = j; k != b.views.end() && k->keyframe == i->keyframe; ++k) {
+        const double separation = separationPx(*i, *k);
+        if (separation >= 0) ++(separation > params_.min_separation_px ? apart : together);
+      }
+      ++i;
+    }
+    return apart > 0 && 2 * apart > together;
+  }
+
+  bool tryMerge(std::size_t a, std::size_t b) {
+    if (a == b) return false;
+    if (b < a) std::swap(a, b);
+    const LineRecord &la = lines_[a], &lb = lines_[b];
+    double ignored = 0;
+    if (!near(a, b, ignored) || seenApart(la, lb)) return false;
+    LineRecord joint = la;
+    joint.id = std::min(la.id, lb.id);
+    joint.views.clear();
+    std::merge(la.views.begin(), la.views.end(), lb.views.begin(), lb.views.end(), std::back_inserter(joint.views),
+               [](const LineView& x, const LineView& y) { return x.keyframe < y.keyframe; });
+    if (lb.views.size() > la.views.size()) joint.estimate = lb.estimate;
+    if (!fitLine(cameras_, fit_, joint) || !explains(joint, la, lb)) return false;
+    lines_[a] = std::move(joint);
+    segments_[a] = drawn(lines_[a]);
+    lines_[b] = {};
+    roots_[b] = a;
+    return true;
+  }
+
+  /// Whether one line does for both: hardly any view is lost and errors stay small.
+  bool explains(const LineRecord& joint, const LineRecord& a, const LineRecord& b) const {
+    const auto inliers = [](const LineRecord& l) {
+      return std::count_if(l.views.begin(), l.views.end(), [](const LineView& v) { return v.inlier; });
+    };
+    const auto before_a = inliers(a), before_b = inliers(b);
+    // both must be explained, also where one has many more views than the other
+    const auto kept = [&](const LineRecord& part) {
+      std::ptrdiff_t n = 0;
+      for (const LineView& v : part.views) n += v.inlier && viewError(cameras_, joint.estimate, v) <= fit_.max_error_px;
+      return n;
+    };
+    if (10 * kept(a) < 8 * before_a || 10 * kept(b) < 8 * before_b) return false;
+    const double alone = (a.error_px * static_cast<double>(before_a) + b.error_px * static_cast<double>(before_b)) /
+                         std::max<double>(1, static_cast<double>(before_a + before_b));
+    // a line at a depth in between may nearly do for two: little may be lost against what they have alone
+    return joint.error_px <= std::max(std::min(params_.max_error_px, 1.3 * alone + 0.3), 1.1 * alone);
+  }
+
+  const KeyframeCameras& cameras_;
+  const LineFitParams& fit_;
+  const MergeParams& params_;
+  std::vector<LineRecord>& lines_;
+  std::vector<std::size_t> roots_;
+  std::vector<Segment3> segments_;
+};
+
+}  // namespace
+
+int mergeLines(const KeyframeCameras& cameras, const LineFitParams& fit, const MergeParams& params,
+               std::vector<LineRecord>& lines) {
+  return LineMerger(cameras, fit, params, lines).run();
+}
+
+}  // namespace lintel

@@ -1,0 +1,98 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <algorithm>
+
+#include "LineExtent.h"
+#include "LineFitting.h"
+#include "LineGroups.h"
+#include "lintel/mapping/MapBuilder.h"
+
+namespace lintel {
+
+namespace {
+
+/// Makes map entries of records; knows what is enough evidence.
+class MapDrawer {
+ public:
+  MapDrawer(const MapParams& params, const MapMaterial& material)
+      : params_(params), material_(material), cameras_(material) {}
+
+  std::optional<MapPoint> draw(const PointRecord& point) const {
+    MapPoint result;
+    for (const PointView& v : point.views)
+      if (v.inlier) result.observations.push_back({v.keyframe, v.px});
+    if (!point.known || static_cast<int>(result.observations.size()) < params_.min_observations) return std::nullopt;
+    const double distance = (point.p_w - cameras_.T_w_c(result.observations.front().keyframe_id).p).norm();
+    if (!(point.sigma_distance_m <= params_.point_max_relative_sigma * distance)) return std::nullopt;
+    result.id = point.id;
+    result.p_w = point.p_w;
+    result.sigma_distance_m = point.sigma_distance_m;
+    result.first_t_ns = timeOf(result.observations.front().keyframe_id);
+    result.last_t_ns = timeOf(result.observations.back().keyframe_id);
+    return result;
+  }
+
+  std::optional<MapLine> draw(const LineRecord& line) const {
+    if (!hasEvidence(line)) return std::nullopt;
+    const auto stretch = seenStretch(cameras_, line, params_.coverage);
+    if (!stretch || stretch->second - stretch->first < params_.min_length_m) return std::nullopt;
+    MapLine result;
+    result.sigma_direction_rad = line.estimate.sigmaDirection();
+    result.sigma_distance_m =
+        std::max(line.estimate.sigmaPosition(stretch->first), line.estimate.sigmaPosition(stretch->second));
+    if (!(result.sigma_direction_rad <= params_.max_sigma_direction_rad) ||
+        !(result.sigma_distance_m <= std::min(params_.max_sigma_m, params_.max_relative_sigma * line.distance_m)))
+      return std::nullopt;
+    result.id = line.id;
+    result.segment_w = segmentOf(cameras_, line, *stretch);
+    result.constrained = line.constrained;
+    for (const LineView& v : line.views)
+      if (v.inlier) result.observations.push_back(observationOf(v, result.segment_w));
+    result.first_t_ns = timeOf(result.observations.front().keyframe_id);
+    result.last_t_ns = timeOf(result.observations.back().keyframe_id);
+    return result;
+  }
+
+ private:
+  bool hasEvidence(const LineRecord& line) const {
+    if (!line.known || keyframesOf(line) < params_.min_observations || line.error_px > params_.max_error_px) return false;
+    const auto inliers = std::count_if(line.views.begin(), line.views.end(), [](const LineView& v) { return v.inlier; });
+    return static_cast<double>(inliers) >= params_.min_inlier_share * static_cast<double>(line.views.size());
+  }
+
+  /// Tracks of a merged line may run the other way: start and end of the views follow the segment's.
+  MapLineObservation observationOf(const LineView& view, const Segment3& segment_w) const {
+    const Eigen::Matrix3d& R_c_w = cameras_.R_c_w(view.keyframe);
+    const Eigen::Vector3d& p_w_c = cameras_.T_w_c(view.keyframe).p;
+    const Eigen::Vector3d start_c = R_c_w * (segment_w.start - p_w_c), end_c = R_c_w * (segment_w.end - p_w_c);
+    // image direction of the 3D direction, at the middle: (x/z, y/z) changes along d
+    const Eigen::Vector3d m = 0.5 * (start_c + end_c), d = end_c - start_c;
+    const Eigen::Vector2d image_d = d.head<2>() * m.z() - m.head<2>() * d.z();
+    const bool turned = image_d.dot(view.end_px - view.start_px) < 0;
+    return {view.keyframe, turned ? view.end_px : view.start_px, turned ? view.start_px : view.end_px};
+  }
+
+  std::int64_t timeOf(FrameId id) const { return material_.keyframes[cameras_.placeOf(id)].t_ns; }
+
+  const MapParams& params_;
+  const MapMaterial& material_;
+  KeyframeCameras cameras_;
+};
+
+}  // namespace
+
+LineMap drawMap(const MapParams& params, const MapMaterial& material) {
+  LineMap map;
+  map.rig = material.rig;
+  map.trajectory = material.trajectory;
+  for (const RetiredKeyframe& k : material.keyframes)
+    map.keyframes.push_back({k.id, k.t_ns, k.T_w_b, k.v_w_b, k.bias.gyro, k.bias.accel});
+  const MapDrawer drawer(params, material);
+  for (const PointRecord& record : material.points)
+    if (auto point = drawer.draw(record)) map.points.push_back(std::move(*point));
+  for (const LineRecord& record : material.lines)
+    if (auto line = drawer.draw(record)) map.lines.push_back(std::move(*line));
+  map.groups = findGroups(params.groups, map.lines);
+  return map;
+}
+
+}  // namespace lintel

@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "MapFitting.h"
+
+#include "LineMerging.h"
+#include "PointMerging.h"
+
+namespace lintel {
+
+MapFitting::MapFitting(const MapParams& params, MapMaterial& material)
+    : params_(params), material_(material), cameras_(material) {
+  line_.max_error_px = point_.max_error_px = params.view_max_error_px;
+  line_.min_depth_m = point_.min_depth_m = params.min_depth_m;
+}
+
+void MapFitting::fitAll() {
+  for (PointRecord& point : material_.points) fitPoint(cameras_, point_, point);
+  for (LineRecord& line : material_.lines) fitLine(cameras_, line_, line);
+}
+
+int MapFitting::merge() {
+  int merged = 0;
+  if (params_.merge.points) merged += mergePoints(cameras_, point_, params_.merge, material_.points);
+  if (params_.merge.lines) merged += mergeLines(cameras_, line_, params_.merge, material_.lines);
+  return merged;
+}
+
+}  // namespace lintel

@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "LineFitting.h"
+#include "PointFitting.h"
+#include "lintel/mapping/MapParams.h"
+
+namespace lintel {
+
+/// Estimates and merges the landmarks of a material with its cameras as they are.
+class MapFitting {
+ public:
+  MapFitting(const MapParams& params, MapMaterial& material);
+
+  /// Every point and line anew from all its views, outliers too: what was rejected once may be right by now.
+  void fitAll();
+
+  /// Joins what is the same; returns how many landmarks went.
+  int merge();
+
+  const KeyframeCameras& cameras() const { return cameras_; }
+
+ private:
+  const MapParams& params_;
+  MapMaterial& material_;
+  KeyframeCameras cameras_;
+  LineFitParams line_;
+  PointFitParams point_;
+};
+
+}  // namespace lintel

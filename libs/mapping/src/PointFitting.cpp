@@ -1,0 +1,147 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "PointFitting.h"
+
+#include <Eigen/Cholesky>
+#include <cmath>
+#include <limits>
+
+namespace lintel {
+
+namespace {
+
+struct FitView {
+  Eigen::Matrix3d R_c_w;
+  Eigen::Vector3d p_w_c;
+  Eigen::Vector2d seen;
+};
+
+/// The point is X / w from `origin_w`, |(X, w)| free: with w = 1 / distance far points stay well behaved. Here as
+/// (bearing change, inverse distance): X = u + B a, w.
+struct Homogeneous {
+  Eigen::Vector3d X = Eigen::Vector3d::UnitZ();
+  double w = 0;
+};
+
+struct Normal {
+  Eigen::Matrix4d H = Eigen::Matrix4d::Zero();
+  Eigen::Vector4d b = Eigen::Vector4d::Zero();
+  double cost = 0;
+  bool in_front = true;
+};
+
+Normal normalEquations(const std::vector<FitView>& views, const Eigen::Vector3d& origin_w, const Homogeneous& point,
+                       double weight, double loss_width) {
+  Normal normal;
+  const double width2 = loss_width * loss_width;
+  for (const FitView& v : views) {
+    const Eigen::Vector3d baseline = v.R_c_w * (origin_w - v.p_w_c), g = v.R_c_w * point.X + point.w * baseline;
+    if (g.z() < 1e-3) {
+      normal.in_front = false;
+      normal.cost = std::numeric_limits<double>::infinity();
+      return normal;
+    }
+    const Eigen::Vector2d n = g.head<2>() / g.z(), r = weight * (n - v.seen);
+    Eigen::Matrix<double, 2, 3> d_g;
+    d_g << 1, 0, -n.x(), 0, 1, -n.y();
+    d_g *= weight / g.z();
+    Eigen::Matrix<double, 2, 4> J;
+    J << d_g * v.R_c_w, d_g * baseline;
+    const double s = r.squaredNorm() / width2, w = 1 / (1 + s);
+    normal.cost += 0.5 * width2 * std::log1p(s);
+    normal.H += w * J.transpose() * J;
+    normal.b += w * J.transpose() * r;
+  }
+  // the scale of (X, w) is free: hold |X|
+  Eigen::Vector4d along;
+  along << point.X.normalized(), 0;
+  normal.H += normal.H.trace() * along * along.transpose();
+  return normal;
+}
+
+double linearInverseDistance(const std::vector<FitView>& views, const Eigen::Vector3d& origin_w,
+                             const Eigen::Vector3d& ray_w) {
+  double ab = 0, bb = 0;  // x_j x (ray + w baseline) = 0
+  for (const FitView& v : views) {
+    const Eigen::Vector3d x = v.seen.homogeneous().normalized();
+    const Eigen::Vector3d a = x.cross(v.R_c_w * ray_w), b = x.cross(v.R_c_w * (origin_w - v.p_w_c));
+    ab += a.dot(b);
+    bb += b.squaredNorm();
+  }
+  return bb > 0 ? -ab / bb : 0;
+}
+
+bool estimate(const std::vector<FitView>& views, const PointFitParams& params, double focal, PointRecord& point) {
+  const Eigen::Vector3d origin_w = views.front().p_w_c;
+  Homogeneous h;
+  h.X = (views.front().R_c_w.transpose() * views.front().seen.homogeneous()).normalized();
+  h.w = std::clamp(linearInverseDistance(views, origin_w, h.X), 1 / params.max_depth_m, 1 / params.min_depth_m);
+  if (point.known) {  // the former estimate may be the better start
+    const Eigen::Vector3d arm = point.p_w - origin_w;
+    if (arm.norm() > params.min_depth_m) h = {arm.normalized(), 1 / arm.norm()};
+  }
+  const double weight = focal / params.sigma_px;
+  Normal now = normalEquations(views, origin_w, h, weight, params.loss_width);
+  if (!now.in_front) return false;
+  double damping = 1e-4;
+  for (int i = 0; i < 12; ++i) {
+    Eigen::Matrix4d H = now.H;
+    H.diagonal() *= 1 + damping;
+    const Eigen::Vector4d step = -H.ldlt().solve(now.b);
+    Homogeneous moved{h.X + step.head<3>(), h.w + step[3]};
+    const double size = moved.X.norm();
+    moved.X /= size, moved.w /= size;
+    const Normal next = normalEquations(views, origin_w, moved, weight, params.loss_width);
+    if (next.in_front && next.cost < now.cost) {
+      const bool converged = now.cost - next.cost < 1e-6 * now.cost;
+      h = moved, now = next;
+      damping *= 0.1;
+      if (converged) break;
+    } else {
+      damping *= 10;
+      if (damping > 1e6) break;
+    }
+  }
+  if (h.w < 1 / params.max_depth_m) return false;
+  point.p_w = origin_w + h.X / h.w;
+  const double variance = now.H.ldlt().solve(Eigen::Vector4d::Unit(3))[3];
+  point.sigma_distance_m = std::sqrt(std::max(0.0, variance)) / (h.w * h.w);
+  return point.p_w.allFinite() && std::isfinite(point.sigma_distance_m);
+}
+
+}  // namespace
+
+double viewError(const KeyframeCameras& cameras, const Eigen::Vector3d& p_w, const PointView& view) {
+  const Eigen::Vector3d p_c = cameras.R_c_w(view.keyframe) * (p_w - cameras.T_w_c(view.keyframe).p);
+  if (p_c.z() < 0.05) return std::numeric_limits<double>::infinity();
+  return (cameras.camera().project(p_c) - view.px).norm();
+}
+
+bool fitPoint(const KeyframeCameras& cameras, const PointFitParams& params, PointRecord& point) {
+  for (PointView& v : point.views) v.inlier = cameras.contains(v.keyframe);
+  bool found = false;
+  for (int pass = 0; pass < 3; ++pass) {
+    std::vector<FitView> views;
+    for (const PointView& v : point.views)
+      if (v.inlier) views.push_back({cameras.R_c_w(v.keyframe), cameras.T_w_c(v.keyframe).p, cameras.camera().normalise(v.px)});
+    found = views.size() >= 2 && estimate(views, params, cameras.camera().meanFocal(), point);
+    if (!found) break;
+    point.known = true;
+    bool changed = false;
+    double sum = 0;
+    int inliers = 0;
+    for (PointView& v : point.views) {
+      if (!cameras.contains(v.keyframe)) continue;
+      const double error = viewError(cameras, point.p_w, v);
+      const bool inlier = error <= params.max_error_px;
+      changed |= inlier != v.inlier;
+      v.inlier = inlier;
+      if (inlier) sum += error, ++inliers;
+    }
+    point.error_px = inliers > 0 ? sum / inliers : 0;
+    found = inliers >= 2;
+    if (!changed) break;
+  }
+  return point.known = found;
+}
+
+}  // namespace lintel

@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <Eigen/Core>
+#include <cstdint>
+#include <utility>
+#include <vector>
+
+namespace lintel {
+
+/// Which things come near each other: a grid of cubes, things entered by some of their points. Results are in a fixed
+/// order, whatever the order of entry within a thing.
+class SpatialIndex {
+ public:
+  explicit SpatialIndex(double cell_m) : cell_m_(cell_m) {}
+
+  void add(std::size_t thing, const Eigen::Vector3d& p_w);
+
+  /// All pairs (a < b) of things with points in the same cube or in neighbouring ones, ascending. Points nearer than
+  /// one cube are always found, farther than 3.5 cubes never.
+  std::vector<std::pair<std::size_t, std::size_t>> pairs() const;
+
+ private:
+  struct Entry {
+    std::int64_t x, y, z;
+    std::size_t thing;
+    bool operator<(const Entry& o) const;
+  };
+  double cell_m_;
+  std::vector<Entry> entries_;
+};
+
+}  // namespace lintel

@@ -1,0 +1,184 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "lintel/mapping/BatchRefinement.h"
+
+#include <gtest/gtest.h>
+
+#include <cstring>
+
+#include "lintel/geometry/Alignment.h"
+#include "lintel/geometry/Rotation.h"
+#include "lintel/mapping/MapBuilder.h"
+#include "lintel/simulation/EurocRig.h"
+#include "lintel/simulation/FigureTrajectory.h"
+#include "lintel/simulation/Random.h"
+#include "lintel/simulation/TrackSimulation.h"
+
+namespace lintel {
+namespace {
+
+/// A simulated flight of four seconds, every fifth frame a keyframe; the causal poses drift away from the truth.
+class BatchRefinementTest : public testing::Test {
+ protected:
+  static void SetUpTestSuite() {
+    TrackSimulationParams tracks;
+    tracks.duration_s = 4;
+    tracks.max_points_per_frame = 60;
+    tracks.max_lines_per_frame = 20;
+    tracks.point_noise_px = tracks.line_noise_px = 0.3;
+    ImuSimulatorParams imu;
+    imu.initial_gyro_bias = imu.initial_accel_bias = 0;
+    flight_ = simulateTracks(FigureTrajectory(), eurocRig(), imu, tracks);
+  }
+  static void TearDownTestSuite() { flight_ = {}; }
+
+  BatchRefinementTest() {
+    MapBuilder builder(rig_, {});
+    const Eigen::Vector3d drift(0.02, -0.03, 0.01), turn(0.001, 0.001, 0.006);  // a second
+    std::shared_ptr<Preintegration> imu;
+    std::map<TrackId, RetiredPoint> points;
+    std::map<TrackId, RetiredLine> lines;
+    WindowUpdate last;
+    for (std::size_t i = 0; i < flight_.frames.size(); ++i) {
+      const SimulatedFrame& frame = flight_.frames[i];
+      const double t = 1e-9 * static_cast<double>(frame.tracks.t_ns - flight_.frames[0].tracks.t_ns);
+      if (imu) imu->append(frame.imu);
+      WindowUpdate update;
+      update.t_ns = frame.tracks.t_ns;
+      update.status = EstimatorStatus::kTracking;
+      update.T_w_b = frame.truth.state.T_w_b;
+      update.T_w_b.p += t * drift;
+      update.T_w_b.q = expRotation(t * turn) * update.T_w_b.q;
+      builder.add(update);
+      if (i % 5 != 0) continue;
+      last.keyframes.push_back({i, update.t_ns, update.T_w_b, frame.truth.state.v_w_b + drift, {}, imu});
+      imu = std::make_shared<Preintegration>(ImuBias{}, rig_.imu_noise);
+      imu->append({frame.imu.back()});
+      for (const PointObservation& o : frame.tracks.points) {
+        points[o.id].triangulated = false;
+        points[o.id].id = o.id;
+        points[o.id].sightings.push_back({i, {}, o.px});
+      }
+      for (const LineObservation& o : frame.tracks.lines) {
+        lines[o.id].triangulated = false;
+        lines[o.id].id = o.id;
+        lines[o.id].sightings.push_back({i, {}, {}, o.start_px, o.end_px, 1.0, true});
+      }
+    }
+    for (auto& [id, point] : points) last.points.push_back(point);
+    for (auto& [id, line] : lines) last.lines.push_back(line);
+    builder.add(last);
+    material_ = builder.material();
+    estimator_.calibration.refine_camera = estimator_.calibration.refine_extrinsics =
+        estimator_.calibration.refine_time_offset = false;
+  }
+
+  double error(const MapMaterial& material) const {
+    std::vector<Eigen::Vector3d> estimate, truth;
+    for (std::size_t i = 0; i < material.trajectory.size(); ++i) {
+      estimate.push_back(material.trajectory[i].second.p);
+      truth.push_back(flight_.frames[i].truth.state.T_w_b.p);
+    }
+    const Similarity T = alignPositions(AlignmentKind::kYaw, estimate, truth);
+    double sum = 0;
+    for (std::size_t i = 0; i < truth.size(); ++i) sum += (T * estimate[i] - truth[i]).squaredNorm();
+    return std::sqrt(sum / static_cast<double>(truth.size()));
+  }
+  RefinementReport refine(MapMaterial& material) const {
+    return BatchRefinement(rig_, estimator_, {}, params_).refine(material);
+  }
+
+  static SimulatedTracks flight_;
+  const Rig rig_ = eurocRig();
+  EstimatorParams estimator_;
+  RefinementParams params_;
+  MapMaterial material_;
+};
+SimulatedTracks BatchRefinementTest::flight_;
+
+TEST_F(BatchRefinementTest, TakesTheDriftAway) {
+  const double before = error(material_);
+  const RefinementReport report = refine(material_);
+  EXPECT_TRUE(report.accepted) << report.verdict;
+  EXPECT_GT(before, 0.02);
+  EXPECT_LT(error(material_), 0.2 * before);
+  EXPECT_LT(report.held_out_after_px, report.held_out_before_px);
+  EXPECT_LT(report.imu_after, 1.5);
+  EXPECT_EQ(material_.trajectory.size(), flight_.frames.size()) << "every frame has a refined pose";
+  EXPECT_NE(report.verdict.find("refined"), std::string::npos);
+}
+
+TEST_F(BatchRefinementTest, LandmarksComeOutWhereTheyAre) {
+  refine(material_);
+  std::vector<Eigen::Vector3d> estimate, truth;
+  for (std::size_t i = 0; i < material_.trajectory.size(); ++i) {
+    estimate.push_back(material_.trajectory[i].second.p);
+    truth.push_back(flight_.frames[i].truth.state.T_w_b.p);
+  }
+  const Similarity T = alignPositions(AlignmentKind::kYaw, estimate, truth);
+  int lines = 0;
+  for (const MapLine& line : drawMap({}, material_).lines) {
+    const Segment3& segment = flight_.lines_w[flight_.line_of_track[line.id]];
+    EXPECT_LT(lineAngle(T.T_a_b.q * line.segment_w.direction(), segment.direction()), 0.02 + 3 * line.sigma_direction_rad);
+    const Eigen::Vector3d middle = T * line.segment_w.midpoint();
+    EXPECT_LT((middle - segment.start).cross(segment.direction()).norm(), 0.02 + 3 * line.sigma_distance_m);
+    ++lines;
+  }
+  EXPECT_GT(lines, 10);
+}
+
+TEST_F(BatchRefinementTest, TheSameBitsEveryTime) {
+  MapMaterial other = material_;
+  refine(material_);
+  refine(other);
+  ASSERT_EQ(material_.keyframes.size(), other.keyframes.size());
+  for (std::size_t i = 0; i < material_.keyframes.size(); ++i) {
+    EXPECT_EQ(std::memcmp(material_.keyframes[i].T_w_b.p.data(), other.keyframes[i].T_w_b.p.data(), 24), 0);
+    EXPECT_EQ(material_.keyframes[i].T_w_b.q.coeffs(), other.keyframes[i].T_w_b.q.coeffs());
+  }
+  EXPECT_EQ(material_.rig.camera.fx, other.rig.camera.fx);
+}
+
+TEST_F(BatchRefinementTest, WhatTheImuContradictsIsNotUsed) {
+  for (RetiredKeyframe& keyframe : material_.keyframes) {
+    if (!keyframe.imu) continue;
+    ImuBatch wrong = keyframe.imu->samples();
+    for (std::size_t i = 0; i < wrong.size(); ++i) wrong[i].accel *= i % 2 ? 1.6 : 0.3;
+    for (ImuSample& s : wrong) s.gyro.x() += s.t_ns % 2'000'000'000 < 1'000'000'000 ? 0.3 : -0.3;
+    auto imu = std::make_shared<Preintegration>(ImuBias{}, rig_.imu_noise);
+    imu->append(wrong);
+    keyframe.imu = imu;
+  }
+  const std::vector<RetiredKeyframe> before = material_.keyframes;
+  const RefinementReport report = refine(material_);
+  EXPECT_FALSE(report.accepted);
+  EXPECT_NE(report.verdict.find("not refined"), std::string::npos);
+  for (std::size_t i = 0; i < before.size(); ++i) EXPECT_EQ(material_.keyframes[i].T_w_b.p, before[i].T_w_b.p);
+  EXPECT_TRUE(std::any_of(material_.lines.begin(), material_.lines.end(), [](const LineRecord& l) { return l.known; }))
+      << "the map is made with the poses as they were";
+}
+
+TEST_F(BatchRefinementTest, AChangeThatIsTooLargeIsNotUsed) {
+  params_.max_moved_m = params_.max_moved_share = 0;
+  const RefinementReport report = refine(material_);
+  EXPECT_FALSE(report.accepted);
+  EXPECT_NE(report.verdict.find("moved"), std::string::npos) << report.verdict;
+}
+
+TEST_F(BatchRefinementTest, ProgressGoesFromNothingToAll) {
+  std::vector<double> done;
+  BatchRefinement(rig_, estimator_, {}, params_).refine(material_, [&](double d) { done.push_back(d); });
+  ASSERT_GT(done.size(), 3u);
+  EXPECT_TRUE(std::is_sorted(done.begin(), done.end()));
+  EXPECT_EQ(done.back(), 1);
+}
+
+TEST_F(BatchRefinementTest, TooLittleToRefineSaysSo) {
+  MapMaterial empty;
+  empty.rig = rig_;
+  const RefinementReport report = refine(empty);
+  EXPECT_FALSE(report.accepted);
+  EXPECT_NE(report.verdict.find("keyframes"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace lintel
