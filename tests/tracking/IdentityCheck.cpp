@@ -3,24 +3,34 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
 #include <ostream>
 
 namespace lintel::truth {
 namespace {
 
-constexpr double kOn_px = 1.5;        ///< both ends this near: on the edge
-constexpr double kApart_px = 2;       ///< another edge is this much further off
-constexpr double kAway_px = 4;        ///< from the former edge
-constexpr double kIsolated_px = 6;    ///< no other edge this near
+constexpr double kOn_px = 1.5;      ///< both ends this near: on the edge
+constexpr double kApart_px = 2;     ///< another edge is this much further off
+constexpr double kAway_px = 4;      ///< from the former edge
+constexpr double kIsolated_px = 6;  ///< no other edge this near
 constexpr double kMaxError_px = 4;
-constexpr double kOverlap = 0.5;      ///< of the sighting
+constexpr double kOverlap = 0.5;  ///< of the sighting
 constexpr int kAwayFrames = 3;
+constexpr int kSightings = 2;
+constexpr double kLong = 10;  ///< sightings of a line whose mean says something
+constexpr double kMedianOfNormal = 0.6745;
 
 double quantile(std::vector<double> values, double q) {
   if (values.empty()) return 0;
   const auto at = values.begin() + static_cast<std::ptrdiff_t>(q * static_cast<double>(values.size() - 1));
   std::nth_element(values.begin(), at, values.end());
   return *at;
+}
+
+double rootMeanSquare(const std::vector<double>& values) {
+  double squares = 0;
+  for (const double value : values) squares += value * value;
+  return std::sqrt(squares / std::max(1.0, static_cast<double>(values.size())));
 }
 
 }  // namespace
@@ -58,6 +68,7 @@ void IdentityCheck::add(const FrameTracks& tracks) {
     ++life.frames;
     const Eigen::Vector2d start = focal * edges_.camera().normalise(line.start_px),
                           end = focal * edges_.camera().normalise(line.end_px);
+    life.ends.push_back({tracks.t_ns, {start.x(), start.y(), end.x(), end.y()}});
     const Anchor anchor = anchorOf(start, end, seen);
     double off = 0;
     if (life.edge >= 0) {
@@ -69,18 +80,45 @@ void IdentityCheck::add(const FrameTracks& tracks) {
       continue;
     }
     if (anchor.isolated) {
-      errors_.emplace_back(std::abs(anchor.start_px), line.sigma_px);
-      errors_.emplace_back(std::abs(anchor.end_px), line.sigma_px);
+      errors_[line.id].push_back({anchor.start_px, line.sigma_px});
+      errors_[line.id].push_back({anchor.end_px, line.sigma_px});
       if (std::max(std::abs(anchor.start_px), std::abs(anchor.end_px)) > kOn_px) continue;
     }
     ++life.anchored;
-    if (life.edge >= 0 && life.edge != anchor.edge && off > kAway_px) {
+    if (life.edge >= 0 && life.edge != anchor.edge && off > kAway_px &&
+        sightingsOnlyOn(life, life.edge, anchor.edge) >= kSightings) {
       life.switched = true;
-      switches_.push_back({tracks.t_ns, line.id, life.edge, anchor.edge, 0.5 * (line.start_px + line.end_px), off});
+      switches_.push_back({tracks.t_ns, line.id, life.edge, anchor.edge, 0.5 * (line.start_px + line.end_px), off,
+                           historyOf(life, life.edge, 12)});
     }
     life.edge = anchor.edge;
     life.away = 0;
   }
+}
+
+int IdentityCheck::sightingsOnlyOn(const Life& life, int edge, int other) const {
+  int sightings = 0;
+  for (const auto& [t_ns, ends] : life.ends) {
+    const auto off = [&, time = t_ns, at = ends](int id) {
+      const Eigen::Vector3d line = edges_.lineAt(id, time);
+      return std::max(std::abs(line.dot(at.head<2>().homogeneous())), std::abs(line.dot(at.tail<2>().homogeneous())));
+    };
+    sightings += off(edge) < kOn_px && off(other) > kAway_px;
+  }
+  return sightings;
+}
+
+std::string IdentityCheck::historyOf(const Life& life, int edge, std::size_t sightings) const {
+  std::string text;
+  for (std::size_t i = life.ends.size() - std::min(sightings, life.ends.size()); i < life.ends.size(); ++i) {
+    const auto& [t_ns, ends] = life.ends[i];
+    const Eigen::Vector3d line = edges_.lineAt(edge, t_ns);
+    char cell[48];
+    std::snprintf(cell, sizeof cell, " %.1f/%.1f", line.dot(ends.head<2>().homogeneous()),
+                  line.dot(ends.tail<2>().homogeneous()));
+    text += cell;
+  }
+  return text;
 }
 
 int IdentityCheck::anchored() const {
@@ -101,30 +139,34 @@ int IdentityCheck::left() const {
 
 IdentityCheck::SigmaRatios IdentityCheck::sigmaRatios() const {
   SigmaRatios result;
-  result.count = errors_.size();
-  std::vector<double> ratios, errors;
-  double squares = 0;
-  for (const auto& [error, sigma] : errors_) {
-    ratios.push_back(error / sigma);
-    errors.push_back(error);
-    squares += ratios.back() * ratios.back();
-    result.beyond_3 += ratios.back() > 3;
+  std::vector<double> ratios, errors, within;
+  for (const auto& [id, ends] : errors_) {
+    double mean[2] = {0, 0};
+    const double n = 0.5 * static_cast<double>(ends.size());
+    for (std::size_t i = 0; i < ends.size(); ++i) mean[i % 2] += ends[i].px / n;
+    for (std::size_t i = 0; i < ends.size(); ++i) {
+      ratios.push_back(std::abs(ends[i].px) / ends[i].sigma_px);
+      errors.push_back(std::abs(ends[i].px));
+      if (n >= kLong) within.push_back(std::abs(ends[i].px - mean[i % 2]) / ends[i].sigma_px * std::sqrt(n / (n - 1)));
+    }
   }
-  if (ratios.empty()) return result;
-  const auto n = static_cast<double>(ratios.size());
-  result.beyond_3 /= n;
-  result.rms = std::sqrt(squares / n);
-  result.typical = quantile(ratios, 0.5) / 0.6745;
-  result.error_px = quantile(errors, 0.5) / 0.6745;
+  result.count = ratios.size();
+  result.typical = quantile(ratios, 0.5) / kMedianOfNormal;
+  result.rms = rootMeanSquare(ratios);
+  result.within_typical = quantile(within, 0.5) / kMedianOfNormal;
+  result.within_rms = rootMeanSquare(within);
+  result.error_px = quantile(errors, 0.5) / kMedianOfNormal;
+  result.beyond_3 = static_cast<double>(std::count_if(ratios.begin(), ratios.end(), [](double r) { return r > 3; })) /
+                    std::max(1.0, static_cast<double>(ratios.size()));
   return result;
 }
 
 void IdentityCheck::printSwitches(std::ostream& out) const {
   for (const Switch& s : switches_)
-    out << "  " << s.t_ns << " line " << s.id << " from edge " << s.from << " (" << edges_.kind(s.from) << ") to " << s.to
-        << " (" << edges_.kind(s.to) << ") at " << static_cast<int>(s.middle_px.x()) << ","
+    out << "  " << s.t_ns << " line " << s.id << " from edge " << s.from << " (" << edges_.kind(s.from) << ") to "
+        << s.to << " (" << edges_.kind(s.to) << ") at " << static_cast<int>(s.middle_px.x()) << ","
         << static_cast<int>(s.middle_px.y()) << ", " << s.off_px << " px off, seen " << lives_.at(s.id).frames
-        << " frames\n";
+        << " frames:" << s.history << "\n";
 }
 
 }  // namespace lintel::truth

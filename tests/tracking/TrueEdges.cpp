@@ -71,8 +71,8 @@ TrueEdges::TrueEdges(const std::string& recording, const Rig& rig) : camera_(rig
 
 bool TrueEdges::poseAt(std::int64_t t_ns, Pose& T_c_w) const {
   const std::int64_t t = t_ns + static_cast<std::int64_t>(1e9 * delay_s_);
-  auto after =
-      std::lower_bound(poses_.begin(), poses_.end(), t, [](const auto& pose, std::int64_t time) { return pose.first < time; });
+  auto after = std::lower_bound(poses_.begin(), poses_.end(), t,
+                                [](const auto& pose, std::int64_t time) { return pose.first < time; });
   if (after == poses_.end()) after = std::prev(after);
   if (after == poses_.begin()) ++after;
   const auto before = std::prev(after);

@@ -44,9 +44,10 @@ void printSummary(const FrontEndStatistics& s, const std::map<TrackId, Sightings
               static_cast<int>(s.frames), 1e3 * cpu_s / frames, sum / frames,
               static_cast<double>(s.points.tracked) / frames, sightings.size(),
               100.0 * static_cast<double>(long_ones) / n);
-  std::printf("lines lost: view %ld edge %ld duplicate %ld undetected %ld ambiguous %ld; flow failed %ld; detections %ld\n",
+  std::printf("lines lost: view %ld edge %ld duplicate %ld undetected %ld jump %ld; flow failed %ld; detections %ld\n",
               long(s.lines.lost_view), long(s.lines.lost_edge), long(s.lines.lost_duplicate),
-              long(s.lines.lost_undetected), 0L, long(s.lines.flow_failed), long(s.lines.detections));
+              long(s.lines.lost_undetected), long(s.lines.lost_jump), long(s.lines.flow_failed),
+              long(s.lines.detections));
   std::printf("points lost: klt %ld backward %ld epipolar %ld drift %ld crowded %ld  median life %.0f  new %ld\n",
               long(s.points.lost_klt), long(s.points.lost_backward), long(s.points.lost_epipolar),
               long(s.points.lost_drift), long(s.points.lost_crowded), s.points.lifetimes.median(),
@@ -60,8 +61,9 @@ void printTruth(const truth::IdentityCheck& check, bool list) {
   std::printf("anchored %d  switched %d = %.2f %%  left %d = %.2f %%\n", check.anchored(), check.switched(),
               100.0 * check.switched() / std::max(1, check.anchored()), check.left(),
               100.0 * check.left() / std::max(1, check.anchored()));
-  std::printf("sigma: %zu ends  error/sigma typical %.2f  rms %.2f  beyond 3 sigma %.1f %%  error %.2f px\n", ratios.count,
-              ratios.typical, ratios.rms, 100 * ratios.beyond_3, ratios.error_px);
+  std::printf("sigma: %zu ends  error %.2f px  error/sigma typical %.2f  rms %.2f  beyond 3 sigma %.1f %%",
+              ratios.count, ratios.error_px, ratios.typical, ratios.rms, 100 * ratios.beyond_3);
+  std::printf("; within a track typical %.2f  rms %.2f\n", ratios.within_typical, ratios.within_rms);
   if (list) check.printSwitches(std::cout);
 }
 

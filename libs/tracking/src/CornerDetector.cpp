@@ -56,24 +56,30 @@ cv::Mat cornerResponse(const cv::Mat& derivative) {
   return response;
 }
 
-/// The strongest pixel of every block, when it is a local maximum.
-std::vector<Candidate> blockMaxima(const cv::Mat& response, int border, float threshold) {
+/// The strongest pixel of every block, when it is a local maximum and not much weaker than the strongest of all.
+std::vector<Candidate> blockMaxima(const cv::Mat& response, int border, float min_quality) {
   std::vector<Candidate> candidates;
+  float strongest = 0;
   for (int y0 = border; y0 < response.rows - border; y0 += kBlock_px)
     for (int x0 = border; x0 < response.cols - border; x0 += kBlock_px) {
-      Candidate best{0, 0, threshold};
+      Candidate best{0, 0, 0};
       for (int y = y0; y < std::min(y0 + kBlock_px, response.rows - border); ++y) {
         const float* row = response.ptr<float>(y);
         for (int x = x0; x < std::min(x0 + kBlock_px, response.cols - border); ++x)
           if (row[x] > best.response) best = {x, y, row[x]};
       }
-      if (best.y == 0) continue;
+      if (best.y == 0 || best.response < min_quality * strongest) continue;
+      strongest = std::max(strongest, best.response);
       bool maximum = true;
       for (int dy = -1; dy <= 1 && maximum; ++dy)
         for (int dx = -1; dx <= 1; ++dx)
           if (response.at<float>(best.y + dy, best.x + dx) > best.response) maximum = false;
       if (maximum) candidates.push_back(best);
     }
+  candidates.erase(
+      std::remove_if(candidates.begin(), candidates.end(),
+                     [&](const Candidate& candidate) { return candidate.response < min_quality * strongest; }),
+      candidates.end());
   return candidates;
 }
 
@@ -84,11 +90,8 @@ std::vector<cv::Point2f> CornerDetector::candidates(const ImagePyramid& pyramid)
   const int level = std::min(1, pyramid.levels() - 1);
   const int scale = 1 << level;
   const cv::Mat response = cornerResponse(pyramid.derivative(level));
-  float strongest = 0;
-  for (int y = 0; y < response.rows; ++y)
-    strongest = std::max(strongest, *std::max_element(response.ptr<float>(y), response.ptr<float>(y) + response.cols));
   const int border = params_.border_px / scale + 2;
-  std::vector<Candidate> maxima = blockMaxima(response, border, static_cast<float>(params_.min_quality) * strongest);
+  std::vector<Candidate> maxima = blockMaxima(response, border, static_cast<float>(params_.min_quality));
   std::sort(maxima.begin(), maxima.end(), [](const Candidate& a, const Candidate& b) {
     return a.response != b.response ? a.response > b.response : (a.y != b.y ? a.y < b.y : a.x < b.x);
   });

@@ -27,8 +27,8 @@ std::vector<ImageLine> DescriptorLineTracker::detect(const ImagePyramid& pyramid
   return detected;
 }
 
-void DescriptorLineTracker::process(const ImagePyramid& pyramid, const GyroPrediction& gyro,
-                                    const std::vector<PointFlow>&, FrontEndStatistics& statistics) {
+void DescriptorLineTracker::process(const ImagePyramid& pyramid, const GyroPrediction& gyro, const PointMotion&,
+                                    FrontEndStatistics& statistics) {
   observations_.clear();
   StageTimer timer(statistics, "lines_descriptor");
   const std::vector<ImageLine> detected = detect(pyramid, statistics.lines);

@@ -16,7 +16,7 @@ class DescriptorLineTracker : public LineTracker {
  public:
   DescriptorLineTracker(const Rig& rig, const LineTrackerParams& params);
 
-  void process(const ImagePyramid& pyramid, const GyroPrediction& gyro, const std::vector<PointFlow>& points,
+  void process(const ImagePyramid& pyramid, const GyroPrediction& gyro, const PointMotion& points,
                FrontEndStatistics& statistics) override;
   const std::vector<LineObservation>& lines() const override { return observations_; }
 

@@ -64,46 +64,75 @@ void findPeaks(const std::array<float, 2 * kMaxReach + 3>& profile, int reach, S
   sample.candidates = (sample.gradient[0] > 0) + (sample.gradient[1] > 0.4f * sample.gradient[0]);
 }
 
-/// Takes away candidates much weaker than the line's own edge: past a corner there is often a faint one.
-void dropWeak(std::vector<Sample>& samples, double length) {
+/// Gradient that the line usually has; 0 without any edge.
+float usualGradient(const std::vector<Sample>& samples) {
   std::vector<float> gradients;
   for (const Sample& sample : samples)
-    if (sample.candidates > 0 && sample.s > 0 && sample.s < length) gradients.push_back(sample.gradient[0]);
-  if (gradients.empty()) return;
+    if (sample.candidates > 0) gradients.push_back(sample.gradient[0]);
+  if (gradients.empty()) return 0;
   const auto middle = gradients.begin() + static_cast<std::ptrdiff_t>(gradients.size() / 2);
   std::nth_element(gradients.begin(), middle, gradients.end());
-  for (Sample& sample : samples)
-    while (sample.candidates > 0 && sample.gradient[static_cast<std::size_t>(sample.candidates) - 1] < kWeak * *middle)
-      --sample.candidates;
+  return *middle;
 }
 
-std::vector<Sample> sampleProfiles(const LineCamera& camera, const cv::Mat& derivative, double scale,
-                                   const ImageLine& line, int reach, double grow_px) {
-  std::vector<Sample> samples;
-  const Eigen::Vector2d d = line.direction(), n = line.normal();
-  const double step_px = std::max(kStep_px, line.length() / kMaxSteps);
-  const int grow_steps = static_cast<int>(grow_px / step_px);
-  const int steps = static_cast<int>(line.length() / step_px);
-  const double first = 0.5 * (line.length() - steps * step_px);
-  std::array<float, 2 * kMaxReach + 3> profile{};
-  for (int i = -grow_steps; i <= steps + grow_steps; ++i) {
-    Sample sample;
-    sample.s = first + i * step_px;
-    const Eigen::Vector2d u = line.start + sample.s * d;
-    if (!camera.mayBeSeen(u)) continue;
-    const Eigen::Vector2d px = camera.toImage(u), step = camera.imageJacobian(u) * n;
-    const double stride = step.norm();
-    if (!camera.camera().contains(px, scale * ((reach + 1) * std::max(stride, 1.0) + 2))) continue;
-    const Eigen::Vector2d centre = px / scale,
-                          unit = step / stride;  // in pixels of the level; there a step is scale px
+/// Takes away candidates much weaker than the line's own edge.
+void dropWeak(Sample& sample, float usual) {
+  while (sample.candidates > 0 && sample.gradient[static_cast<std::size_t>(sample.candidates) - 1] < kWeak * usual)
+    --sample.candidates;
+}
+
+/// Looks across one line at one image for edges.
+class Profiler {
+ public:
+  Profiler(const LineCamera& camera, const cv::Mat& derivative, double scale, const ImageLine& line)
+      : camera_(camera), derivative_(derivative), scale_(scale), line_(line), d_(line.direction()), n_(line.normal()) {}
+
+  /// Candidates at `s` along the line, `reach` level pixels to both sides of `centre_px` off it; false outside the
+  /// image.
+  bool look(double s, double centre_px, int reach, Sample& sample) {
+    const Eigen::Vector2d u = line_.start + s * d_ + centre_px * n_;
+    if (!camera_.mayBeSeen(u)) return false;
+    if (std::abs(s - step_at_) > kStepValid_px) {
+      step_ = camera_.imageJacobian(u) * n_;
+      step_at_ = s;
+      stride_ = step_.norm();
+    }
+    const Eigen::Vector2d px = camera_.toImage(u);
+    if (!camera_.camera().contains(px, scale_ * ((reach + 1) * std::max(stride_, 1.0) + 2))) return false;
+    const Eigen::Vector2d centre = px / scale_, unit = step_ / stride_;  // of the level: there a step is scale px
+    std::array<float, 2 * kMaxReach + 3> profile;
     for (int k = -reach - 1; k <= reach + 1; ++k)
       profile[static_cast<std::size_t>(k + reach + 1)] =
-          gradientAlong(derivative, centre.x() + k * step.x(), centre.y() + k * step.y(), unit.x(), unit.y());
+          gradientAlong(derivative_, centre.x() + k * step_.x(), centre.y() + k * step_.y(), unit.x(), unit.y());
+    sample = {};
+    sample.s = s;
     findPeaks(profile, reach, sample);
-    for (double& offset : sample.offset) offset *= scale;
-    samples.push_back(sample);
+    for (double& offset : sample.offset) offset = offset * scale_ + centre_px;
+    return true;
   }
-  dropWeak(samples, line.length());
+
+ private:
+  static constexpr double kStepValid_px = 16;  ///< along the line: the lens changes slowly
+
+  const LineCamera& camera_;
+  const cv::Mat& derivative_;
+  double scale_;
+  const ImageLine& line_;
+  Eigen::Vector2d d_, n_, step_{0, 0};  ///< step_: one undistorted pixel across the line, in the image
+  double step_at_ = -1e9, stride_ = 1;
+};
+
+std::vector<Sample> sampleProfiles(Profiler& profiler, double length, int reach) {
+  std::vector<Sample> samples;
+  const double step_px = std::max(kStep_px, length / kMaxSteps);
+  const int steps = static_cast<int>(length / step_px);
+  const double first = 0.5 * (length - steps * step_px);
+  samples.reserve(static_cast<std::size_t>(steps) + 1);
+  Sample sample;
+  for (int i = 0; i <= steps; ++i)
+    if (profiler.look(first + i * step_px, 0, reach, sample)) samples.push_back(sample);
+  const float usual = usualGradient(samples);
+  for (Sample& s : samples) dropWeak(s, usual);
   return samples;
 }
 
@@ -132,8 +161,9 @@ Fit vote(const std::vector<Sample>& samples, double length, double search_px) {
     for (const Sample& sample : samples)
       for (int c = 0; c < sample.candidates; ++c) {
         const double shift = sample.offset[static_cast<std::size_t>(c)] - tilt * (sample.s / length - 0.5);
-        const int bin = static_cast<int>(std::lround(shift / kBin_px)) + bins / 2;
-        if (bin < 0 || bin >= bins) continue;
+        const double place = shift / kBin_px + bins / 2 + 0.5;
+        if (place < 0 || place >= bins) continue;
+        const int bin = static_cast<int>(place);
         const auto k = static_cast<std::size_t>(bin);
         votes[k] += 0.5;
         votes[k + 1] += 1.0;
@@ -187,12 +217,21 @@ int firstSupported(const std::vector<Sample>& samples, int from, int end, int st
   return end;
 }
 
-/// Walks outward from `at` while the edge goes on, over at most one sample without it.
-int growFrom(const std::vector<Sample>& samples, int at, int step) {
-  int last = at;
-  for (int i = at + step; i >= 0 && i < static_cast<int>(samples.size()) && std::abs(i - last) <= 2; i += step)
-    if (samples[static_cast<std::size_t>(i)].inlier) last = i;
-  return last;
+/// Walks outward from `s` by `step_px` while the edge goes on, over at most one place without it; returns how far.
+/// What lies beyond the segment has no say in the fit: an edge that meets it at an acute angle would turn it.
+double grow(Profiler& profiler, const Fit& fit, double s, double step_px, double limit_px, float usual,
+            double tolerance_px) {
+  double reached = s;
+  Sample sample;
+  for (int i = 1, missed = 0; i * std::abs(step_px) <= limit_px && missed < 2; ++i) {
+    const double at = s + i * step_px;
+    if (!profiler.look(at, fit.at(at), 1, sample)) break;
+    dropWeak(sample, usual);
+    const bool seen = std::abs(nearest(sample, fit, sample.fitted)) < tolerance_px;
+    missed = seen ? 0 : missed + 1;
+    if (seen) reached = at;
+  }
+  return reached;
 }
 
 }  // namespace
@@ -210,31 +249,29 @@ std::optional<RefinedLine> EdgeRefiner::refineAtLevel(const ImagePyramid& pyrami
   const int reach = std::min(static_cast<int>(std::ceil(search_px / scale)), kMaxReach);
   const double length = line.length();
   if (length < 4 * kStep_px) return std::nullopt;
-  std::vector<Sample> samples = sampleProfiles(camera_, pyramid.derivative(level), scale, line, reach, grow_px);
+  Profiler profiler(camera_, pyramid.derivative(level), scale, line);
+  std::vector<Sample> samples = sampleProfiles(profiler, length, reach);
   if (samples.size() < 5) return std::nullopt;
   Fit fit = vote(samples, length, search_px);
-  const double rms = leastSquares(samples, fit, kInlier_px * scale);
-  if (rms > kInlier_px * scale) return std::nullopt;
+  const double tolerance_px = kInlier_px * scale, rms = leastSquares(samples, fit, tolerance_px);
+  if (rms > tolerance_px) return std::nullopt;
 
-  // The part of the samples on the given segment decides; what lies beyond may only be added to it.
-  int own_first = 0, own_last = static_cast<int>(samples.size()) - 1;
-  while (own_first < own_last && samples[static_cast<std::size_t>(own_first)].s < 0) ++own_first;
-  while (own_last > own_first && samples[static_cast<std::size_t>(own_last)].s > length) --own_last;
-  int first = firstSupported(samples, own_first, own_last, 1);
-  int last = firstSupported(samples, own_last, own_first, -1);
+  const int end = static_cast<int>(samples.size()) - 1;
+  const int first = firstSupported(samples, 0, end, 1), last = firstSupported(samples, end, 0, -1);
   if (last - first < 3) return std::nullopt;
-  if (first == own_first) first = growFrom(samples, first, -1);
-  if (last == own_last) last = growFrom(samples, last, 1);
-
-  const int seen = static_cast<int>(std::count_if(samples.begin() + first, samples.begin() + last + 1,
-                                                  [](const Sample& sample) { return sample.inlier; }));
+  const auto seen = std::count_if(samples.begin() + first, samples.begin() + last + 1,
+                                  [](const Sample& sample) { return sample.inlier; });
   RefinedLine refined;
   refined.support = static_cast<double>(seen) / (last - first + 1);
   if (refined.support < kMinSupport) return std::nullopt;
+
+  double from = samples[static_cast<std::size_t>(first)].s, to = samples[static_cast<std::size_t>(last)].s;
+  const double step_px = (to - from) / (last - first);
+  const float usual = usualGradient(samples);
+  if (first == 0) from = grow(profiler, fit, from, -step_px, grow_px, usual, tolerance_px);
+  if (last == end) to = grow(profiler, fit, to, step_px, grow_px, usual, tolerance_px);
   const Eigen::Vector2d d = line.direction(), n = line.normal();
-  const auto pointAt = [&](double s) -> Eigen::Vector2d { return line.start + s * d + fit.at(s) * n; };
-  refined.line = {pointAt(samples[static_cast<std::size_t>(first)].s),
-                  pointAt(samples[static_cast<std::size_t>(last)].s)};
+  refined.line = {line.start + from * d + fit.at(from) * n, line.start + to * d + fit.at(to) * n};
   // The ends of a fitted line vary twice as much as its middle.
   refined.sigma_px = std::hypot(kFloor_px * scale, 2 * rms / std::sqrt(static_cast<double>(seen)));
   return refined;
@@ -243,8 +280,8 @@ std::optional<RefinedLine> EdgeRefiner::refineAtLevel(const ImagePyramid& pyrami
 std::optional<ImageLine> EdgeRefiner::orient(const cv::Mat& derivative, const ImageLine& line) const {
   double balance = 0, strength = 0;
   const Eigen::Vector2d n = line.normal();
-  for (int i = 1; i <= 9; ++i) {
-    const Eigen::Vector2d u = line.at(0.1 * i);
+  for (int i = 1; i <= 5; ++i) {
+    const Eigen::Vector2d u = line.at(0.2 * i - 0.1);
     if (!camera_.sees(u, 4)) continue;
     const Eigen::Vector2d px = camera_.toImage(u), step = (camera_.imageJacobian(u) * n).normalized();
     float strongest = 0;

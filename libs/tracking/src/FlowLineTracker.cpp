@@ -11,6 +11,12 @@ namespace {
 
 constexpr double kSupportWithoutFlow = 0.7;  ///< an edge found without optical flow must be a clear one
 constexpr double kSupportOfNew = 0.7;        ///< new lines are chosen, old ones are kept
+constexpr double kSlack = 1.5;               ///< of a jump's limit: the edge is not where optical flow ended
+constexpr double kNoise_px = 0.35;           ///< of an end across the line, from frame to frame
+constexpr double kSureDepth_px = 1.0;        ///< depths that say less are not asked
+constexpr double kFade = 0.8;                ///< of a drift, per frame
+constexpr double kMaxDrift_px = 4;           ///< a line that drifts further follows another edge
+constexpr double kSame_px = 1.0;             ///< one edge as seen twice in the same image
 
 }  // namespace
 
@@ -22,25 +28,23 @@ FlowLineTracker::FlowLineTracker(const Rig& rig, const LineTrackerParams& params
       merger_(params),
       refiner_(camera_) {}
 
-void FlowLineTracker::process(const ImagePyramid& pyramid, const GyroPrediction& gyro,
-                              const std::vector<PointFlow>& points, FrontEndStatistics& statistics) {
+void FlowLineTracker::process(const ImagePyramid& pyramid, const GyroPrediction& gyro, const PointMotion& points,
+                              FrontEndStatistics& statistics) {
   if (pyramid.hasPrevious()) {
     StageTimer timer(statistics, "lines_flow");
     predict(pyramid, gyro, points, statistics.lines);
   }
-  std::vector<ImageLine> fresh;
-  const bool detect = frames_since_detection_ == 0;
-  if (detect) {
-    StageTimer timer(statistics, "lines_detect");
-    fresh = mergeDetections(pyramid, statistics);
+  {
+    StageTimer timer(statistics, "lines_refine");
+    refine(pyramid, points.step, statistics.lines);
   }
-  frames_since_detection_ = (frames_since_detection_ + 1) % params_.detect_every_n;
-  StageTimer timer(statistics, "lines_refine");
-  refine(pyramid, statistics.lines);
-  if (detect) {  // not more often: lines that touch for a frame or two part again
-    dropDuplicates(statistics.lines);
+  if (frames_since_detection_ == 0) {
+    StageTimer timer(statistics, "lines_detect");
+    const std::vector<ImageLine> fresh = mergeDetections(pyramid, statistics);
+    dropDuplicates(statistics.lines);  // not more often: lines that touch for a frame or two part again
     addNew(pyramid, fresh);
   }
+  frames_since_detection_ = (frames_since_detection_ + 1) % params_.detect_every_n;
   publish(statistics.lines);
 }
 
@@ -53,10 +57,10 @@ void FlowLineTracker::end(const Track& track, std::int64_t& reason, LineStatisti
   statistics.lifetimes.add(track.length);
 }
 
-void FlowLineTracker::predict(const ImagePyramid& pyramid, const GyroPrediction& gyro,
-                              const std::vector<PointFlow>& points, LineStatistics& statistics) {
+void FlowLineTracker::predict(const ImagePyramid& pyramid, const GyroPrediction& gyro, const PointMotion& points,
+                              LineStatistics& statistics) {
   std::vector<CarriedLine> lines;
-  for (const Track& track : tracks_) lines.push_back({track.line, track.motion});
+  for (const Track& track : tracks_) lines.push_back({track.line, track.motion, track.depth});
   const auto predicted = flow_.predict(lines, pyramid, gyro, points);
   std::vector<Track> kept;
   for (std::size_t i = 0; i < tracks_.size(); ++i) {
@@ -67,6 +71,10 @@ void FlowLineTracker::predict(const ImagePyramid& pyramid, const GyroPrediction&
     }
     track.line = predicted[i]->line;
     track.turned = predicted[i]->turned;
+    track.expected = predicted[i]->expected;
+    track.limit_px = predicted[i]->limit_px;
+    track.typical_px = predicted[i]->typical_px;
+    track.carried = predicted[i]->depth;
     track.by_flow = predicted[i]->by_flow;
     track.detected = false;
     if (!track.by_flow) ++statistics.flow_failed;
@@ -82,9 +90,9 @@ std::vector<ImageLine> FlowLineTracker::mergeDetections(const ImagePyramid& pyra
   for (const Track& track : tracks_) predicted.push_back(track.line);
   MergedLines merged = merger_.merge(predicted, detected);
   for (std::size_t i = 0; i < tracks_.size(); ++i) {
-    tracks_[i].line = merged.lines[i];
     tracks_[i].detected = merged.detections[i] > 0;
     if (!tracks_[i].detected) continue;
+    extend(pyramid, merged.lines[i], tracks_[i]);
     tracks_[i].undetected = 0;
     ++tracks_[i].sightings;
   }
@@ -93,7 +101,28 @@ std::vector<ImageLine> FlowLineTracker::mergeDetections(const ImagePyramid& pyra
   return std::move(merged.fresh);
 }
 
-void FlowLineTracker::refine(const ImagePyramid& pyramid, LineStatistics& statistics) {
+/// Puts a track on the edge that was found for it; false when that moves as another edge would.
+bool FlowLineTracker::moveTo(const ImageLine& line, const StepTranslation& step, Track& track) const {
+  const Eigen::Vector2d surprise = normalMotion(track.expected, line);
+  if (track.motion && surprise.cwiseAbs().maxCoeff() > kSlack * track.limit_px) return false;
+  const double noise_px = std::max(kNoise_px, track.typical_px);
+  if (track.carried) {
+    const bool sure = track.carried->sigma_px.maxCoeff() < kSureDepth_px;
+    track.drift *= kFade;
+    if (sure) track.drift += surprise * (kNoise_px / noise_px);
+    if (track.drift.cwiseAbs().maxCoeff() > kMaxDrift_px) return false;
+    track.depth = observe(*track.carried, track.turned, line, step.t_c1(), camera_.focal(), noise_px);
+  } else {
+    track.depth.reset();
+    track.drift.setZero();
+    if (step.typicalInverseDepth() > 0) track.depth = assumedDepth(step);
+  }
+  track.motion = normalMotion(track.turned, line);
+  track.line = line;
+  return true;
+}
+
+void FlowLineTracker::refine(const ImagePyramid& pyramid, const StepTranslation& step, LineStatistics& statistics) {
   std::vector<Track> kept;
   for (Track& track : tracks_) {
     // Without flow the prediction is worse, and the edge may lie further off.
@@ -113,12 +142,32 @@ void FlowLineTracker::refine(const ImagePyramid& pyramid, LineStatistics& statis
       end(track, statistics.lost_view, statistics);
       continue;
     }
-    track.line = *clipped;
-    track.motion = normalMotion(track.turned, track.line);
+    if (!moveTo(*clipped, step, track)) {
+      end(track, statistics.lost_jump, statistics);
+      continue;
+    }
     track.sigma_px = refined->sigma_px;
     kept.push_back(track);
   }
   tracks_ = std::move(kept);
+}
+
+/// Takes what the detector adds to a line, if it is the same edge: where the line has been seen so far the longer one
+/// must coincide with it, and beyond must lie within what its direction leaves open.
+void FlowLineTracker::extend(const ImagePyramid& pyramid, const ImageLine& united, Track& track) const {
+  if (united.length() < track.line.length() + params_.grow_px) return;
+  const auto refined = refiner_.refine(pyramid, united, params_.refine_px, 0);
+  if (!refined || refined->line.length() < track.line.length()) return;
+  const auto clipped = camera_.clip(refined->line, params_.border_px);
+  if (!clipped) return;
+  const LineRelation own = relate(*clipped, track.line);
+  if (own.distance_px > kSame_px || own.angle_rad > params_.merge_angle_rad) return;
+  const double reach = clipped->length() / track.line.length();
+  if (relate(track.line, *clipped).distance_px > kSame_px * reach) return;
+  if (track.depth) track.depth = alongLine(*track.depth, track.line, *clipped);
+  track.line = *clipped;
+  track.sigma_px = refined->sigma_px;
+  if (track.motion) track.motion = normalMotion(track.turned, track.line);
 }
 
 void FlowLineTracker::dropDuplicates(LineStatistics& statistics) {
@@ -142,13 +191,16 @@ void FlowLineTracker::addNew(const ImagePyramid& pyramid, const std::vector<Imag
   for (const ImageLine& candidate : fresh) {  // longest first
     if (static_cast<int>(tracks_.size()) >= params_.max_lines) return;
     if (candidate.length() < params_.min_length_px) continue;
+    const auto known = [&](const ImageLine& line) {
+      return std::any_of(tracks_.begin(), tracks_.end(),
+                         [&](const Track& track) { return merger_.duplicates(track.line, line); });
+    };
+    if (known(candidate)) continue;
     const auto refined = refiner_.refine(pyramid, candidate, params_.refine_px, params_.grow_px);
     if (!refined || refined->support < kSupportOfNew) continue;
     const auto clipped = camera_.clip(refined->line, params_.border_px);
     if (!clipped || clipped->length() < params_.min_length_px) continue;
-    if (std::any_of(tracks_.begin(), tracks_.end(),
-                    [&](const Track& track) { return merger_.duplicates(track.line, *clipped); }))
-      continue;
+    if (known(*clipped)) continue;
     Track track;
     track.line = *clipped;
     track.sigma_px = refined->sigma_px;

@@ -16,7 +16,7 @@ class FlowLineTracker : public LineTracker {
  public:
   FlowLineTracker(const Rig& rig, const LineTrackerParams& params);
 
-  void process(const ImagePyramid& pyramid, const GyroPrediction& gyro, const std::vector<PointFlow>& points,
+  void process(const ImagePyramid& pyramid, const GyroPrediction& gyro, const PointMotion& points,
                FrontEndStatistics& statistics) override;
   const std::vector<LineObservation>& lines() const override { return observations_; }
 
@@ -24,7 +24,13 @@ class FlowLineTracker : public LineTracker {
   struct Track {
     TrackId id = 0;  ///< 0: not published yet
     ImageLine line;
-    ImageLine turned;                       ///< its last place, turned into this frame
+    ImageLine turned;                     ///< its last place, turned into this frame
+    ImageLine expected;                   ///< and where its motion brings it
+    double limit_px = 0;                  ///< largest distance from there
+    double typical_px = 0;                ///< see PredictedLine
+    std::optional<CarriedDepth> carried;  ///< its depth, where `expected` relies on it
+    std::optional<LineDepth> depth;
+    Eigen::Vector2d drift{0, 0};            ///< of its ends from where its depth brings them, summed up, fading
     std::optional<Eigen::Vector2d> motion;  ///< of its ends beyond the rotation, see CarriedLine
     double sigma_px = 1;
     int length = 0;      ///< frames in which it was published
@@ -34,10 +40,12 @@ class FlowLineTracker : public LineTracker {
     bool detected = true;
   };
 
-  void predict(const ImagePyramid& pyramid, const GyroPrediction& gyro, const std::vector<PointFlow>& points,
+  void predict(const ImagePyramid& pyramid, const GyroPrediction& gyro, const PointMotion& points,
                LineStatistics& statistics);
   std::vector<ImageLine> mergeDetections(const ImagePyramid& pyramid, FrontEndStatistics& statistics);
-  void refine(const ImagePyramid& pyramid, LineStatistics& statistics);
+  void refine(const ImagePyramid& pyramid, const StepTranslation& step, LineStatistics& statistics);
+  bool moveTo(const ImageLine& line, const StepTranslation& step, Track& track) const;
+  void extend(const ImagePyramid& pyramid, const ImageLine& united, Track& track) const;
   void dropDuplicates(LineStatistics& statistics);
   void addNew(const ImagePyramid& pyramid, const std::vector<ImageLine>& fresh);
   void publish(LineStatistics& statistics);

@@ -2,6 +2,7 @@
 #include "LineDetector.h"
 
 #include <algorithm>
+#include <cmath>
 #include <opencv2/imgproc.hpp>
 #include <opencv2/ximgproc/edge_drawing.hpp>
 #include <stdexcept>
@@ -15,6 +16,7 @@ constexpr double kJoinGap_px = 15;
 
 /// Joins `other` to `line` when both are pieces of one edge.
 bool join(ImageLine& line, const ImageLine& other) {
+  if (std::abs(line.normal().dot(other.start - line.start)) > kJoinDistance_px) return false;  // most, quickly
   const LineRelation relation = relate(line, other);
   if (relation.angle_rad > kJoinAngle_rad || relation.distance_px > kJoinDistance_px ||
       relation.overlap_px < -kJoinGap_px)

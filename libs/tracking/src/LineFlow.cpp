@@ -16,6 +16,9 @@ constexpr double kSpacing_px = 15;       ///< between samples, when the line is 
 constexpr double kFitTolerance_px = 1.5;
 constexpr float kNear_px = 20;          ///< points nearer than this weigh alike
 constexpr double kMaxSurprise_px = 40;  ///< flow further than this from the guess is a mistake
+constexpr double kSureDepth_px = 1.5;   ///< a line whose depth says less is expected to move as before
+constexpr double kCalm_px = 2;          ///< a line may always be this far from where it is expected
+constexpr double kTimesTypical = 4;     ///< and this many times as far as the other lines of the frame are
 
 double median(std::vector<double> values) {
   const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
@@ -76,7 +79,7 @@ ImageLine LineFlow::turnedLine(const ImageLine& line, const GyroPrediction& gyro
 }
 
 LineFlow::Samples LineFlow::sample(const std::vector<CarriedLine>& lines, const GyroPrediction& gyro,
-                                   const std::vector<PointFlow>& points) const {
+                                   const PointMotion& points) const {
   Samples samples;
   for (const CarriedLine& carried : lines) {
     samples.first.push_back(samples.from.size());
@@ -84,13 +87,23 @@ LineFlow::Samples LineFlow::sample(const std::vector<CarriedLine>& lines, const 
     const auto turnedAt = [&](double share) {
       return turnedPixel(camera_.camera(), gyro.R_c1_c0(), carried.line.at(share) / camera_.focal());
     };
-    const NearbyMotion near_start = motionNear(turnedAt(0.1), points), near_end = motionNear(turnedAt(0.9), points);
+    const NearbyMotion near_start = motionNear(turnedAt(0.1), points.flow),
+                       near_end = motionNear(turnedAt(0.9), points.flow);
     Eigen::Vector2d at_start = toEigen(near_start.residual), at_end = toEigen(near_end.residual);
     if (carried.motion) {  // across the line its own motion is known better than that of the points nearby
       const Eigen::Vector2d n = turned.normal();
       at_start += n * (carried.motion->x() + n.dot(toEigen(near_start.change) - at_start));
       at_end += n * (carried.motion->y() + n.dot(toEigen(near_end.change) - at_end));
     }
+    std::optional<CarriedDepth> depth;
+    if (carried.depth && carried.depth->epoch == points.step.epoch()) {
+      depth = carry(*carried.depth, carried.line, turned, gyro.R_c1_c0(), points.step.t_c1(), camera_.focal());
+      if (depth->sigma_px.maxCoeff() < kSureDepth_px) {
+        at_start = depth->line.start - turned.start;
+        at_end = depth->line.end - turned.end;
+      }
+    }
+    samples.depths.push_back(depth);
     samples.turned.push_back(turned);
     samples.guessed.push_back({turned.start + at_start, turned.end + at_end});
     const int count =
@@ -119,7 +132,7 @@ PredictedLine LineFlow::fit(const Samples& samples, std::size_t index, double ju
     found_u.push_back(camera_.fromImage(px));
   }
   const ImageLine& guess = samples.guessed[index];
-  PredictedLine result{guess, samples.turned[index], false};
+  PredictedLine result{guess, samples.turned[index], guess, jump_px, 0, samples.depths[index], false};
   const auto robust = fitRobustLine(found_u, kFitTolerance_px);
   if (!robust) return result;
   const ImageLine carried = carryEnds(guess, *robust, guessed_u, found_u);
@@ -131,7 +144,7 @@ PredictedLine LineFlow::fit(const Samples& samples, std::size_t index, double ju
 }
 
 std::vector<PredictedLine> LineFlow::follow(const std::vector<CarriedLine>& lines, const ImagePyramid& pyramid,
-                                            const GyroPrediction& gyro, const std::vector<PointFlow>& points,
+                                            const GyroPrediction& gyro, const PointMotion& points,
                                             const Reach& reach) const {
   const Samples samples = sample(lines, gyro, points);
   std::vector<cv::Point2f> to = samples.guess;
@@ -146,14 +159,34 @@ std::vector<PredictedLine> LineFlow::follow(const std::vector<CarriedLine>& line
   return followed;
 }
 
+double LineFlow::typicalSurprise(const std::vector<CarriedLine>& lines, const std::vector<PredictedLine>& followed) {
+  std::vector<double> surprises;
+  for (std::size_t i = 0; i < lines.size(); ++i)
+    if (lines[i].motion)
+      surprises.push_back(followed[i].by_flow
+                              ? normalMotion(followed[i].expected, followed[i].line).cwiseAbs().maxCoeff()
+                              : followed[i].limit_px);
+  return surprises.empty() ? 0.0 : median(std::move(surprises));
+}
+
 std::vector<std::optional<PredictedLine>> LineFlow::predict(const std::vector<CarriedLine>& lines,
                                                             const ImagePyramid& pyramid, const GyroPrediction& gyro,
-                                                            const std::vector<PointFlow>& points) const {
+                                                            const PointMotion& points) const {
   std::vector<std::optional<PredictedLine>> predicted(lines.size());
   if (lines.empty()) return predicted;
   std::vector<PredictedLine> followed =
       follow(lines, pyramid, gyro, points, {params_.window_px, params_.flow_levels, params_.max_jump_px});
 
+  // A camera that is jerked surprises all lines, another edge just one: what the lines of this frame have in common
+  // says how far each may be off.
+  const double typical_px = typicalSurprise(lines, followed);
+  const double limit_px = std::min(params_.max_jump_px, kCalm_px + kTimesTypical * typical_px);
+  for (std::size_t i = 0; i < lines.size(); ++i) {
+    if (!lines[i].motion) continue;
+    followed[i].limit_px = limit_px;
+    if (followed[i].by_flow && normalMotion(followed[i].expected, followed[i].line).cwiseAbs().maxCoeff() > limit_px)
+      followed[i].by_flow = false;
+  }
   // The few that were not found are looked for again from further away: jerks and motion blur.
   std::vector<CarriedLine> again;
   std::vector<std::size_t> index;
@@ -163,7 +196,7 @@ std::vector<std::optional<PredictedLine>> LineFlow::predict(const std::vector<Ca
       index.push_back(i);
     }
   if (!again.empty()) {
-    const Reach further{std::max(params_.window_px, pyramid.windowPx()), pyramid.levels(), 2 * params_.max_jump_px};
+    const Reach further{std::max(params_.window_px, pyramid.windowPx()), pyramid.levels(), 1.5 * limit_px};
     const std::vector<PredictedLine> second = follow(again, pyramid, gyro, points, further);
     for (std::size_t k = 0; k < index.size(); ++k) followed[index[k]] = second[k];
   }
@@ -173,6 +206,8 @@ std::vector<std::optional<PredictedLine>> LineFlow::predict(const std::vector<Ca
     const auto clipped = camera_.clip(result.line, params_.border_px);
     if (!clipped) continue;
     result.line = *clipped;
+    result.limit_px = lines[i].motion ? limit_px : kMaxSurprise_px;
+    result.typical_px = typical_px;
     predicted[i] = result;
   }
   return predicted;

@@ -8,6 +8,7 @@
 #include "GyroPrediction.h"
 #include "ImageLine.h"
 #include "ImagePyramid.h"
+#include "LineDepth.h"
 #include "PointTracker.h"
 #include "lintel/tracking/FrontEndParams.h"
 
@@ -19,12 +20,17 @@ namespace lintel {
 struct CarriedLine {
   ImageLine line;
   std::optional<Eigen::Vector2d> motion;
+  std::optional<LineDepth> depth;  ///< when known, better than `motion`
 };
 
 /// A line carried into the current frame.
 struct PredictedLine {
   ImageLine line;
-  ImageLine turned;      ///< where the line would be had the camera only turned
+  ImageLine turned;                   ///< where the line would be had the camera only turned
+  ImageLine expected;                 ///< where its own motion and the points nearby say it should be
+  double limit_px = 0;                ///< further from `expected` it is another edge; see LineFlow::predict
+  double typical_px = 0;              ///< how far this frame's lines are from where they were expected
+  std::optional<CarriedDepth> depth;  ///< what `expected` relies on
   bool by_flow = false;  ///< false: optical flow failed; the gyro and the points nearby say where it should be
 };
 
@@ -36,14 +42,14 @@ class LineFlow {
 
   /// One result per line; empty when it left the image.
   std::vector<std::optional<PredictedLine>> predict(const std::vector<CarriedLine>& lines, const ImagePyramid& pyramid,
-                                                    const GyroPrediction& gyro,
-                                                    const std::vector<PointFlow>& points) const;
+                                                    const GyroPrediction& gyro, const PointMotion& points) const;
 
  private:
   struct Samples {
     std::vector<std::size_t> first;          ///< of each line; one more at the end
     std::vector<cv::Point2f> from, guess;    ///< image pixels
     std::vector<ImageLine> turned, guessed;  ///< per line: by the rotation alone, and with the expected motion
+    std::vector<std::optional<CarriedDepth>> depths;
   };
   /// How far optical flow looks.
   struct Reach {
@@ -51,10 +57,9 @@ class LineFlow {
     double jump_px;  ///< largest distance from where a line with a history is expected
   };
   std::vector<PredictedLine> follow(const std::vector<CarriedLine>& lines, const ImagePyramid& pyramid,
-                                    const GyroPrediction& gyro, const std::vector<PointFlow>& points,
-                                    const Reach& reach) const;
-  Samples sample(const std::vector<CarriedLine>& lines, const GyroPrediction& gyro,
-                 const std::vector<PointFlow>& points) const;
+                                    const GyroPrediction& gyro, const PointMotion& points, const Reach& reach) const;
+  static double typicalSurprise(const std::vector<CarriedLine>& lines, const std::vector<PredictedLine>& followed);
+  Samples sample(const std::vector<CarriedLine>& lines, const GyroPrediction& gyro, const PointMotion& points) const;
 
   PredictedLine fit(const Samples& samples, std::size_t index, double jump_px, const std::vector<cv::Point2f>& to,
                     const std::vector<unsigned char>& found) const;

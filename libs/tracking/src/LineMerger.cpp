@@ -34,7 +34,9 @@ ImageLine united(const ImageLine& a, const ImageLine& b) {
 double LineMerger::score(const ImageLine& predicted, const ImageLine& detected) const {
   // A short line's direction says little far away: the longer one is the ruler.
   const bool longer = predicted.length() >= detected.length();
-  const LineRelation relation = longer ? relate(predicted, detected) : relate(detected, predicted);
+  const ImageLine &ruler = longer ? predicted : detected, &other = longer ? detected : predicted;
+  if (std::abs(ruler.normal().dot(other.start - ruler.start)) > params_.merge_distance_px) return 0;  // most, quickly
+  const LineRelation relation = relate(ruler, other);
   const double shorter = std::min(predicted.length(), detected.length());
   if (relation.angle_rad > params_.merge_angle_rad || relation.distance_px > params_.merge_distance_px ||
       relation.overlap_px < -kGap_px || shorter <= 0)

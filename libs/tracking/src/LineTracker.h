@@ -19,7 +19,7 @@ class LineTracker {
   virtual ~LineTracker() = default;
 
   /// Takes the pyramid's current frame; `points` is what tracked points did on the way to it.
-  virtual void process(const ImagePyramid& pyramid, const GyroPrediction& gyro, const std::vector<PointFlow>& points,
+  virtual void process(const ImagePyramid& pyramid, const GyroPrediction& gyro, const PointMotion& points,
                        FrontEndStatistics& statistics) = 0;
 
   /// Lines of the current frame, ascending id.

@@ -13,7 +13,8 @@ namespace lintel {
 namespace {
 
 constexpr double kMinEigenvalue = 1e-4;  ///< OpenCV's default: patches without texture fail
-constexpr int kBackwardLevels = 1;       ///< the way back starts at the answer: two levels suffice
+constexpr int kSteadyLevels = 2;         ///< for points whose motion is known
+constexpr int kBackwardLevels = 1;       ///< the way back starts at the answer
 
 bool inside(const PinholeRadtan& camera, const cv::Point2f& p, double border) {
   return camera.contains({p.x, p.y}, border);
@@ -32,7 +33,8 @@ PointTracker::PointTracker(const Rig& rig, const PointTrackerParams& params)
     : camera_(rig.camera),
       params_(params),
       detector_(params),
-      drift_(params.drift_frames, twoViewParams(rig.camera, params.drift_px)) {}
+      drift_(params.drift_frames, twoViewParams(rig.camera, params.drift_px)),
+      step_(rig.camera.meanFocal()) {}
 
 std::vector<cv::Point2f> PointTracker::pixels() const {
   std::vector<cv::Point2f> px;
@@ -59,40 +61,67 @@ void PointTracker::process(const ImagePyramid& pyramid, GyroPrediction& gyro, Fr
   }
 }
 
+void PointTracker::followFrom(const ImagePyramid& pyramid, const std::vector<std::size_t>& indices, int levels,
+                              Followed& followed) const {
+  if (indices.empty()) return;
+  std::vector<cv::Point2f> from, to;
+  for (const std::size_t i : indices) {
+    from.emplace_back(static_cast<float>(points_[i].px.x()), static_cast<float>(points_[i].px.y()));
+    to.push_back(followed.px[i]);
+  }
+  std::vector<cv::Point2f> back = from;
+  std::vector<unsigned char> found, returned;
+  const cv::Size window(params_.window_px, params_.window_px);
+  const cv::TermCriteria criteria(cv::TermCriteria::COUNT | cv::TermCriteria::EPS, params_.max_iterations, 0.01);
+  const int top = std::min(levels, pyramid.levels()) - 1;
+  cv::calcOpticalFlowPyrLK(pyramid.previous(), pyramid.current(), from, to, found, cv::noArray(), window, top, criteria,
+                           cv::OPTFLOW_USE_INITIAL_FLOW, kMinEigenvalue);
+  cv::calcOpticalFlowPyrLK(pyramid.current(), pyramid.previous(), to, back, returned, cv::noArray(), window,
+                           std::min(kBackwardLevels, pyramid.levels()) - 1, criteria, cv::OPTFLOW_USE_INITIAL_FLOW,
+                           kMinEigenvalue);
+  for (std::size_t k = 0; k < indices.size(); ++k) {
+    const std::size_t i = indices[k];
+    followed.px[i] = to[k];
+    if (!found[k] || !inside(camera_, to[k], params_.border_px))
+      followed.fate[i] = Fate::kLost;
+    else if (!returned[k] || cv::norm(back[k] - from[k]) > params_.forward_backward_px)
+      followed.fate[i] = Fate::kNotReturned;
+    else
+      followed.fate[i] = Fate::kAlive;
+  }
+}
+
 PointTracker::Followed PointTracker::follow(const ImagePyramid& pyramid, const GyroPrediction& gyro,
                                             PointStatistics& statistics) const {
   Followed followed;
-  const std::vector<cv::Point2f> from = pixels();
-  for (const PointObservation& p : points_) followed.px.push_back(turnedPixel(camera_, gyro.R_c1_c0(), p.normalised));
-  followed.alive.assign(from.size(), 1);
-
-  const cv::Size window(params_.window_px, params_.window_px);
-  const cv::TermCriteria criteria(cv::TermCriteria::COUNT | cv::TermCriteria::EPS, params_.max_iterations, 0.01);
-  std::vector<unsigned char> found, returned;
-  std::vector<cv::Point2f> back = from;
-  cv::calcOpticalFlowPyrLK(pyramid.previous(), pyramid.current(), from, followed.px, found, cv::noArray(), window,
-                           pyramid.levels() - 1, criteria, cv::OPTFLOW_USE_INITIAL_FLOW, kMinEigenvalue);
-  cv::calcOpticalFlowPyrLK(pyramid.current(), pyramid.previous(), followed.px, back, returned, cv::noArray(), window,
-                           std::min(kBackwardLevels, pyramid.levels() - 1), criteria, cv::OPTFLOW_USE_INITIAL_FLOW,
-                           kMinEigenvalue);
-  for (std::size_t i = 0; i < from.size(); ++i) {
-    if (!found[i] || !inside(camera_, followed.px[i], params_.border_px)) {
-      followed.alive[i] = 0;
-      ++statistics.lost_klt;
-    } else if (!returned[i] || cv::norm(back[i] - from[i]) > params_.forward_backward_px) {
-      followed.alive[i] = 0;
-      ++statistics.lost_backward;
+  followed.fate.assign(points_.size(), Fate::kLost);
+  std::vector<std::size_t> steady, others;
+  for (std::size_t i = 0; i < points_.size(); ++i) {
+    followed.px.push_back(turnedPixel(camera_, gyro.R_c1_c0(), points_[i].normalised));
+    const auto before = residuals_.find(points_[i].id);
+    (before == residuals_.end() ? others : steady).push_back(i);
+    if (before != residuals_.end()) followed.px[i] += before->second;
+  }
+  // What moves as before needs few levels. New points and those that were not found are looked for from afar.
+  followFrom(pyramid, steady, kSteadyLevels, followed);
+  for (const std::size_t i : steady)
+    if (followed.fate[i] != Fate::kAlive) {
+      followed.px[i] = turnedPixel(camera_, gyro.R_c1_c0(), points_[i].normalised);
+      others.push_back(i);
     }
+  followFrom(pyramid, others, pyramid.levels(), followed);
+  for (const Fate fate : followed.fate) {
+    statistics.lost_klt += fate == Fate::kLost;
+    statistics.lost_backward += fate == Fate::kNotReturned;
   }
   return followed;
 }
 
-void PointTracker::rejectByEpipolarGeometry(Followed& followed, GyroPrediction& gyro,
-                                            PointStatistics& statistics) const {
+void PointTracker::rejectByEpipolarGeometry(Followed& followed, GyroPrediction& gyro, PointStatistics& statistics) {
   std::vector<TwoViewPair> pairs;
   std::vector<std::size_t> index;
   for (std::size_t i = 0; i < points_.size(); ++i) {
-    if (!followed.alive[i]) continue;
+    if (followed.fate[i] != Fate::kAlive) continue;
     pairs.push_back({points_[i].normalised, camera_.normalise({followed.px[i].x, followed.px[i].y})});
     index.push_back(i);
   }
@@ -100,12 +129,17 @@ void PointTracker::rejectByEpipolarGeometry(Followed& followed, GyroPrediction& 
       twoViewMotion(pairs, gyro.R_c1_c0(), gyro.information(), twoViewParams(camera_, params_.epipolar_px));
   for (std::size_t k = 0; k < index.size(); ++k)
     if (!motion.inlier[k]) {
-      followed.alive[index[k]] = 0;
+      followed.fate[index[k]] = Fate::kLost;
       ++statistics.lost_epipolar;
     }
   // Half of the points off any epipolar line: the scene moves or the images are bad; nothing to learn about the gyro.
   if (motion.inliers >= 15 && 2 * static_cast<std::size_t>(motion.inliers) > pairs.size())
     gyro.correct(motion.delta, motion.information);
+  std::vector<StepTranslation::Pair> inliers;
+  for (std::size_t k = 0; k < index.size(); ++k)
+    if (motion.inlier[k]) inliers.push_back({points_[index[k]].id, pairs[k].x0, pairs[k].x1});
+  const bool known = motion.inliers >= 10 && 2 * static_cast<std::size_t>(motion.inliers) > pairs.size();
+  step_.update(inliers, gyro.R_c1_c0(), known ? std::make_optional(motion.direction) : std::nullopt);
 }
 
 void PointTracker::rejectCrowded(Followed& followed, PointStatistics& statistics) const {
@@ -113,11 +147,11 @@ void PointTracker::rejectCrowded(Followed& followed, PointStatistics& statistics
   // that the older one stays.
   DistanceGrid occupied(camera_.width, camera_.height, 0.5 * params_.min_distance_px);
   for (std::size_t i = 0; i < points_.size(); ++i) {
-    if (!followed.alive[i]) continue;
+    if (followed.fate[i] != Fate::kAlive) continue;
     if (occupied.isFree(followed.px[i])) {
       occupied.insert(followed.px[i]);
     } else {
-      followed.alive[i] = 0;
+      followed.fate[i] = Fate::kLost;
       ++statistics.lost_crowded;
     }
   }
@@ -127,7 +161,7 @@ void PointTracker::accept(const Followed& followed, const GyroPrediction& gyro, 
   std::vector<PointObservation> kept;
   std::map<TrackId, cv::Point2f> residuals;
   for (std::size_t i = 0; i < points_.size(); ++i) {
-    if (!followed.alive[i]) {
+    if (followed.fate[i] != Fate::kAlive) {
       statistics.lifetimes.add(points_[i].track_length);
       continue;
     }

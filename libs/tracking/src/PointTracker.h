@@ -10,6 +10,7 @@
 #include "DriftCheck.h"
 #include "GyroPrediction.h"
 #include "ImagePyramid.h"
+#include "StepTranslation.h"
 #include "TwoViewMotion.h"
 #include "lintel/sensing/Rig.h"
 #include "lintel/tracking/FrameTracks.h"
@@ -25,6 +26,12 @@ struct PointFlow {
   std::optional<cv::Point2f> change;  ///< of the residual against that of the step before; empty for a new point
 };
 
+/// What the points tell those who follow other things.
+struct PointMotion {
+  const std::vector<PointFlow>& flow;  ///< of the points that were followed into the current frame
+  const StepTranslation& step;         ///< of the camera
+};
+
 /// KLT tracks of corners from frame to frame. A point lost is lost: no re-detection under the old identity.
 class PointTracker {
  public:
@@ -35,17 +42,20 @@ class PointTracker {
 
   /// Points of the current frame, ascending id.
   const std::vector<PointObservation>& points() const { return points_; }
-  /// Motion of the points that were followed into the current frame.
-  const std::vector<PointFlow>& flow() const { return flow_; }
+  PointMotion motion() const { return {flow_, step_}; }
 
  private:
+  enum class Fate : char { kAlive, kLost, kNotReturned };
   struct Followed {
     std::vector<cv::Point2f> px;
-    std::vector<char> alive;
+    std::vector<Fate> fate;
   };
 
+  /// Follows the points of `indices` from where `followed` guesses them, and back again.
+  void followFrom(const ImagePyramid& pyramid, const std::vector<std::size_t>& indices, int levels,
+                  Followed& followed) const;
   Followed follow(const ImagePyramid& pyramid, const GyroPrediction& gyro, PointStatistics& statistics) const;
-  void rejectByEpipolarGeometry(Followed& followed, GyroPrediction& gyro, PointStatistics& statistics) const;
+  void rejectByEpipolarGeometry(Followed& followed, GyroPrediction& gyro, PointStatistics& statistics);
   void rejectCrowded(Followed& followed, PointStatistics& statistics) const;
   void accept(const Followed& followed, const GyroPrediction& gyro, PointStatistics& statistics);
   void rejectDrifting(const GyroPrediction& gyro, PointStatistics& statistics);
@@ -58,6 +68,7 @@ class PointTracker {
   DriftCheck drift_;
   std::vector<PointObservation> points_;
   std::vector<PointFlow> flow_;
+  StepTranslation step_;
   std::map<TrackId, cv::Point2f> residuals_;  ///< of the last step
   TrackId next_id_ = 1;
   int frames_since_detection_ = 0;

@@ -64,6 +64,20 @@ TEST_F(EdgeRefinerTest, trimsWhatHasNoEdgeAndGrowsAlongTheEdge) {
   EXPECT_NEAR(grown->line.length() - 0.4 * camera_.focal(), 48, 8);
 }
 
+TEST_F(EdgeRefinerTest, anEdgeThatMeetsAtAnAcuteAngleDoesNotTurnTheLine) {
+  // The strip's upper edge ends at x = 0, where one goes on that bends away by 6 degrees.
+  const double bend = std::tan(0.105);
+  show([&](const Eigen::Vector2d& x) {
+    const double edge = -0.25 + (x.x() > 0 ? bend * x.x() : 0.0);
+    return x.y() > edge && x.y() < 0.3 ? 180.0 : 60.0;
+  });
+  const auto refined = refiner_.refine(pyramid_, line(-0.16, -0.25, -0.02, -0.25), 3, 40);
+  ASSERT_TRUE(refined);
+  EXPECT_LT(refined->line.end.x() / camera_.focal(), 0.06);
+  for (const Eigen::Vector2d& end : {refined->line.start, refined->line.end})
+    EXPECT_LT(std::abs(end.y() + 0.25 * camera_.focal()), 1.0);
+}
+
 TEST_F(EdgeRefinerTest, findsABlurredEdgeAtHalfResolution) {
   // A faint ramp 12 px wide: at full resolution nowhere steeper than the 2 grey levels a pixel that an edge needs.
   const double focal = camera_.focal();

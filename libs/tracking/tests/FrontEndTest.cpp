@@ -119,6 +119,57 @@ TEST(FrontEnd, aLineKeepsItsNameWhenSplitAndCut) {
   EXPECT_GT(length(tracks[7].lines.front()), 0.9);  // grown back
 }
 
+TEST(FrontEnd, parallelEdgesAtDifferentDepthsThatCrossKeepTheirNames) {
+  // Two posts, each bright to its right, before a wall with texture. The camera moves sideways, and the near post's
+  // edge passes over the far one's.
+  const auto post = [](double x, double width, double grey) {
+    return [=](const Eigen::Vector2d& at) -> std::optional<double> {
+      if (at.x() < x || at.x() > x + width) return std::nullopt;
+      return grey;
+    };
+  };
+  const auto wall = testing::blobs(11);
+  const double near_x = -0.35, far_x = -0.15;
+  const std::vector<testing::Layer> layers = {
+      {2.0, post(near_x, 0.08, 150)}, {3.5, post(far_x, 0.5, 200)}, {6.0, [&](const Eigen::Vector2d& at) -> std::optional<double> {
+                                                            return 0.4 * wall(at);
+                                                          }}};
+  const Rig rig = testing::testRig();
+  FrontEnd front_end(rig, linesAtOnce());
+  std::map<TrackId, std::set<char>> seen_on;
+  for (int i = 0; i < 30; ++i) {
+    const Eigen::Vector3d p_w(-0.05 * i, 0.002 * i, 0);
+    const std::int64_t t_ns = i * kStep_ns;
+    const auto tracks = front_end.process(testing::renderLayers(rig, layers, t_ns, p_w),
+                                          testing::constantRate(t_ns - kStep_ns, t_ns, {0, 0, 0}));
+    const double near_now = near_x - p_w.x() / 2.0, far_now = far_x - p_w.x() / 3.5;
+    if (std::abs(near_now - far_now) * 300 < 6) continue;
+    for (const LineObservation& line : tracks.lines) {
+      const double x = 0.5 * (line.start.x() + line.end.x());
+      if (std::abs(line.end.x() - line.start.x()) * 300 > 3) continue;
+      if (std::abs(x - near_now) * 300 < 2) seen_on[line.id].insert('n');
+      if (std::abs(x - far_now) * 300 < 2) seen_on[line.id].insert('f');
+    }
+  }
+  std::set<char> followed;
+  for (const auto& [id, edges] : seen_on) {
+    EXPECT_EQ(edges.size(), 1u) << "line " << id << " was on both edges";
+    followed.insert(edges.begin(), edges.end());
+  }
+  EXPECT_EQ(followed.size(), 2u);
+}
+
+TEST(FrontEnd, anEdgeWhoseContrastTurnsRoundIsAnotherLine) {
+  const Strip strip{{-0.35, -0.1}, {0.3, 0.12}, 0.03};
+  const auto bright = testing::strips({strip}, {}, 60, 180), dark = testing::strips({strip}, {}, 180, 60);
+  const auto tracks = trackTurning({bright, bright, bright, dark, dark, dark}, linesAtOnce(), {0.1, 0.1, 0});
+  std::set<TrackId> before;
+  for (const LineObservation& line : tracks[2].lines) before.insert(line.id);
+  EXPECT_EQ(before.size(), 2u);
+  ASSERT_FALSE(tracks.back().lines.empty());
+  for (const LineObservation& line : tracks.back().lines) EXPECT_EQ(before.count(line.id), 0u);
+}
+
 TEST(FrontEnd, publishesALineOnlyWhenSeenTwice) {
   FrontEndParams params = linesAtOnce();
   params.lines.sightings_before_use = 2;

@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include "lintel/sensing/Frame.h"
@@ -48,6 +49,26 @@ inline Frame renderScene(const Rig& rig, const Scene& scene, std::int64_t t_ns,
       image->pixels.push_back(static_cast<std::uint8_t>(std::lround(std::min(255.0, std::max(0.0, sum / 4)))));
     }
   return {t_ns, image};
+}
+
+/// A plane that faces the first camera, `depth` away; grey values at normalised coordinates of its own, empty where one
+/// sees through it.
+struct Layer {
+  double depth;
+  std::function<std::optional<double>(const Eigen::Vector2d&)> grey;
+};
+
+/// What a camera sees of layers, nearer ones first, from `p_w` without turning: 2x2 samples a pixel.
+inline Frame renderLayers(const Rig& rig, const std::vector<Layer>& layers, std::int64_t t_ns,
+                          const Eigen::Vector3d& p_w) {
+  const Scene scene = [&](const Eigen::Vector2d& x) {
+    for (const Layer& layer : layers) {
+      const Eigen::Vector2d at = (x * (layer.depth - p_w.z()) + p_w.head<2>()) / layer.depth;
+      if (const auto grey = layer.grey(at)) return *grey;
+    }
+    return 0.0;
+  };
+  return renderScene(rig, scene, t_ns);
 }
 
 /// Smooth random blobs: corners everywhere, the same for the same seed.

@@ -64,7 +64,7 @@ struct LineTrackerParams {
   double min_length_px = 50;              ///< of a new line [Lim2021: 50 px]
   double keep_length_px = 30;             ///< a tracked line that gets shorter is lost
   int window_px = 9;                      ///< side of the KLT patch of a sample on a line
-  int flow_levels = 2;                    ///< pyramid levels for the samples
+  int flow_levels = 1;                    ///< pyramid levels for the samples; those not found are looked for on all
   int max_iterations = 6;                 ///< of their KLT, per level
   int min_samples = 5;                    ///< on a short line
   int max_samples = 6;                    ///< on a long line

@@ -49,6 +49,7 @@ struct LineStatistics {
   std::int64_t flow_failed = 0;       ///< predictions without optical flow (by gyro and points nearby)
   std::int64_t lost_view = 0;         ///< left the image
   std::int64_t lost_edge = 0;         ///< no edge at the predicted place, or too short a part of it
+  std::int64_t lost_jump = 0;         ///< moved unlike anything around it: another edge
   std::int64_t lost_duplicate = 0;    ///< became the same as an older line
   std::int64_t lost_undetected = 0;   ///< not seen by the detector for too long
   std::int64_t lost_unconfirmed = 0;  ///< candidates that were gone before they got an identity
