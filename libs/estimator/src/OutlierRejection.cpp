@@ -27,6 +27,7 @@ int rejectOutliers(SlidingWindow& window, const LandmarkParams& params) {
     track.triangulated = false;
     track.verdict = LineVerdict::kNone;
     track.group = 0;
+    track.best.reset();
     ++rejected;
   }
   return rejected;

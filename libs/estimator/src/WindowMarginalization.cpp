@@ -43,7 +43,7 @@ void marginaliseOldest(SlidingWindow& window, const EstimatorParams& params) {
     }
   for (const auto& [id, track] : window.lines)
     if (entersProblem(track, params.degeneracy) && !track.sightings.empty() && track.sightings.front().frame == oldest.id) {
-      if (!track.placed || track.sightings.size() < 2) continue;
+      if (!track.placed || track.sightings.size() < 2) continue;  // shared directions stay out of the prior
       factors.addSightings(track);
       dropped.insert({BlockKey::kLine, id});
     }
@@ -57,6 +57,10 @@ void marginaliseOldest(SlidingWindow& window, const EstimatorParams& params) {
         track.sightings.erase(track.sightings.begin() + 1, track.sightings.end() - 1);
       }
   };
+  for (auto& [id, track] : window.lines)
+    if (dropped.count({BlockKey::kLine, id}) && track.verdict == LineVerdict::kGood &&
+        (!track.best || track.sigma_direction_rad < track.best->sigma_direction_rad))
+      track.best = KnownLine{track.line, track.origin_w, track.sigma_direction_rad, track.sigma_distance_m};
   consume(window.points, BlockKey::kPoint);
   consume(window.lines, BlockKey::kLine);
 }

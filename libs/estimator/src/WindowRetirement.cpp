@@ -35,7 +35,15 @@ void retirePoint(const SlidingWindow& window, const PointTrack& track, WindowUpd
 }
 
 void retireLine(const LineTrack& track, WindowUpdate& update) {
-  if (!track.triangulated) return retireUnplaced(track, update.lines);
+  if (!track.triangulated && !track.best) return retireUnplaced(track, update.lines);
+  if (track.best && (!track.triangulated || track.best->sigma_direction_rad <= track.sigma_direction_rad)) {
+    LineTrack known = track;  // what it was when it was known best
+    known.line = track.best->line;
+    known.origin_w = track.best->origin_w;
+    update.lines.push_back({track.id, lineInWorld(known), track.best->sigma_direction_rad, track.best->sigma_distance_m,
+                            false, 0, allSightings(track.former, track.sightings)});
+    return;
+  }
   update.lines.push_back({track.id, lineInWorld(track), track.sigma_direction_rad, track.sigma_distance_m,
                           track.degenerate(), track.group, allSightings(track.former, track.sightings)});
 }

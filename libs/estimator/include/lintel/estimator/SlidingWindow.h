@@ -6,6 +6,7 @@
 #include <deque>
 #include <map>
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include "lintel/factors/FrameMotion.h"
@@ -85,6 +86,13 @@ struct SharedDirection {
   FrameId last_used = 0;   ///< newest frame that had a member
 };
 
+/// A line as it was known once.
+struct KnownLine {
+  LineBlock line = LineBlock::Zero();
+  Eigen::Vector3d origin_w = Eigen::Vector3d::Zero();
+  double sigma_direction_rad = 0, sigma_distance_m = 0;
+};
+
 /// A line: world axes, moment about `origin_w`.
 struct LineTrack {
   TrackId id = 0;
@@ -98,6 +106,7 @@ struct LineTrack {
   bool placed = true;                             ///< false: in a group, and its distance is not known
   bool alone = false;                             ///< its end points have contradicted such a direction
   double sigma_direction_rad = 0, sigma_distance_m = 0;
+  std::optional<KnownLine> best;                  ///< when marginalisation used up its sightings, if it was good then
 
   bool degenerate() const { return verdict > LineVerdict::kGood; }
 };
