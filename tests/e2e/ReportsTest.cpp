@@ -25,8 +25,11 @@ TEST_F(Pipeline, FiguresOfTheMapAgreeWithAnIndependentInstrument) {
   const char* mapcheck = std::getenv("LINTEL_MAPCHECK");
   if (mapcheck == nullptr || !fs::exists(mapcheck)) GTEST_SKIP() << "mapcheck is absent (LINTEL_MAPCHECK)";
   ASSERT_EQ(run("lintel-map", shellWord(folder_ / "out/map.lintel") + " -o " + shellWord(folder_ / "check.csv")), 0);
+  // the trajectory that the map belongs to
+  const fs::path refined = folder_ / "out/trajectory_refined.tum";
+  const fs::path trajectory = fs::exists(refined) ? refined : folder_ / "out/trajectory.tum";
   const std::string command = shellWord(mapcheck) + " " + shellWord(recording()) + " " +
-                              shellWord(folder_ / "out/trajectory.tum") + " " + shellWord(folder_ / "check.csv") + " > " +
+                              shellWord(trajectory) + " " + shellWord(folder_ / "check.csv") + " > " +
                               shellWord(folder_ / "mapcheck.out");
   ASSERT_EQ(std::system(command.c_str()), 0);
   const std::string reference = "\n" + bytesOf(folder_ / "mapcheck.out");

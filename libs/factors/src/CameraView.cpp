@@ -11,7 +11,7 @@ CameraView::CameraView(const double* pose, const double* extrinsics, const doubl
   const double offset_s = correction[kTimeOffsetAt];
   const Eigen::Matrix3d R_stamp = T_w_b.R(), turn = expRotation(motion.omega_b * offset_s).toRotationMatrix();
   const Eigen::Matrix3d R_w_b = R_stamp * turn, R_c_b = T_b_c.R().transpose();
-  R_c_w = R_c_b * R_w_b.transpose();
+  R_c_w = (R_w_b * T_b_c.R()).transpose();
   p_w_c = T_w_b.p + R_stamp * (motion.v_b * offset_s) + R_w_b * T_b_c.p;
   if (!derivatives) return;
   d_pose << Eigen::Matrix3d::Identity(), -R_stamp * skew(motion.v_b * offset_s + turn * T_b_c.p),
