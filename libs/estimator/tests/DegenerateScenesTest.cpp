@@ -160,7 +160,9 @@ TEST(DegenerateScenes, PolesAndStrutsAmongRailsAreNotBent) {
       EXPECT_TRUE(line.group == 0 || angle_deg(line, mixed) < 1) << "track " << id << " is tied to what it is not parallel to";
       continue;
     }
-    EXPECT_LT(angle_deg(line, mixed), angle_deg(dropped->second, mixed) + 1) << "track " << id;
+    // bent is what noise does not explain
+    const double noise_deg = 2 * line.sigma_direction_rad * 180 / M_PI;
+    EXPECT_LT(angle_deg(line, mixed), angle_deg(dropped->second, mixed) + 1 + noise_deg) << "track " << id;
     ++compared;
   }
   EXPECT_GE(compared, 10);
