@@ -15,7 +15,6 @@ namespace lintel::truth {
 namespace {
 
 constexpr double kNear_m = 0.05;
-constexpr std::int64_t kTick_ns = 500;  ///< frames' times are whole ticks of 100 ns
 
 void eachRow(const std::string& path, const std::function<void(const std::vector<std::string>&)>& take) {
   std::ifstream in(path);
@@ -104,8 +103,8 @@ std::vector<SeenEdge> TrueEdges::seenAt(std::int64_t t_ns) const {
   Pose T_c_w;
   if (!poseAt(t_ns, T_c_w)) return seen;
   const double focal = camera_.meanFocal();
-  const auto end = visible_.upper_bound(t_ns + kTick_ns);
-  for (auto it = visible_.lower_bound(t_ns - kTick_ns); it != end; ++it) {
+  const auto range = visible_.equal_range(t_ns);
+  for (auto it = range.first; it != range.second; ++it) {
     const auto [id, mask] = it->second;
     const Edge& edge = edges_.at(id);
     int first = 0, last = 4;  // each of the five points stands for a fifth

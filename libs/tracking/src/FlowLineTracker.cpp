@@ -11,11 +11,11 @@ namespace {
 
 constexpr double kSupportWithoutFlow = 0.7;  ///< an edge found without optical flow must be a clear one
 constexpr double kSupportOfNew = 0.7;        ///< new lines are chosen, old ones are kept
-constexpr double kSlack = 1.2;               ///< of a jump's limit: the edge is not where optical flow ended
+constexpr double kSlack = 1.5;               ///< of a jump's limit: the edge is not where optical flow ended
 constexpr double kNoise_px = 0.35;           ///< of an end across the line, from frame to frame
 constexpr double kSureDepth_px = 1.0;        ///< depths that say less are not asked
 constexpr double kFade = 0.8;                ///< of a drift, per frame
-constexpr double kMaxDrift_px = 3.5;         ///< a line that drifts further follows another edge
+constexpr double kMaxDrift_px = 4;           ///< a line that drifts further follows another edge
 constexpr double kSame_px = 1.0;             ///< one edge as seen twice in the same image
 
 }  // namespace

@@ -16,10 +16,9 @@ constexpr double kSpacing_px = 15;       ///< between samples, when the line is 
 constexpr double kFitTolerance_px = 1.5;
 constexpr float kNear_px = 20;          ///< points nearer than this weigh alike
 constexpr double kMaxSurprise_px = 40;  ///< flow further than this from the guess is a mistake
-constexpr int kFewSamples = 4;          ///< enough to confirm what is known
 constexpr double kSureDepth_px = 1.5;   ///< a line whose depth says less is expected to move as before
 constexpr double kCalm_px = 2;          ///< a line may always be this far from where it is expected
-constexpr double kTimesTypical = 3;     ///< and this many times as far as the other lines of the frame are
+constexpr double kTimesTypical = 4;     ///< and this many times as far as the other lines of the frame are
 
 double median(std::vector<double> values) {
   const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
@@ -80,7 +79,7 @@ ImageLine LineFlow::turnedLine(const ImageLine& line, const GyroPrediction& gyro
 }
 
 LineFlow::Samples LineFlow::sample(const std::vector<CarriedLine>& lines, const GyroPrediction& gyro,
-                                   const PointMotion& points, bool few) const {
+                                   const PointMotion& points) const {
   Samples samples;
   for (const CarriedLine& carried : lines) {
     samples.first.push_back(samples.from.size());
@@ -96,22 +95,19 @@ LineFlow::Samples LineFlow::sample(const std::vector<CarriedLine>& lines, const 
       at_start += n * (carried.motion->x() + n.dot(toEigen(near_start.change) - at_start));
       at_end += n * (carried.motion->y() + n.dot(toEigen(near_end.change) - at_end));
     }
-    bool sure = false;
     std::optional<CarriedDepth> depth;
     if (carried.depth && carried.depth->epoch == points.step.epoch()) {
       depth = carry(*carried.depth, carried.line, turned, gyro.R_c1_c0(), points.step.t_c1(), camera_.focal());
       if (depth->sigma_px.maxCoeff() < kSureDepth_px) {
         at_start = depth->line.start - turned.start;
         at_end = depth->line.end - turned.end;
-        sure = true;
       }
     }
     samples.depths.push_back(depth);
     samples.turned.push_back(turned);
     samples.guessed.push_back({turned.start + at_start, turned.end + at_end});
-    int count =
+    const int count =
         std::clamp(static_cast<int>(carried.line.length() / kSpacing_px), params_.min_samples, params_.max_samples);
-    if (few && sure) count = std::min(count, kFewSamples);
     for (int i = 0; i < count; ++i) {
       const double share = (i + 0.5) / count;
       const Eigen::Vector2d from = camera_.toImage(carried.line.at(share));
@@ -150,7 +146,7 @@ PredictedLine LineFlow::fit(const Samples& samples, std::size_t index, double ju
 std::vector<PredictedLine> LineFlow::follow(const std::vector<CarriedLine>& lines, const ImagePyramid& pyramid,
                                             const GyroPrediction& gyro, const PointMotion& points,
                                             const Reach& reach) const {
-  const Samples samples = sample(lines, gyro, points, reach.few);
+  const Samples samples = sample(lines, gyro, points);
   std::vector<cv::Point2f> to = samples.guess;
   std::vector<unsigned char> found;
   const cv::TermCriteria criteria(cv::TermCriteria::COUNT | cv::TermCriteria::EPS, params_.max_iterations, 0.03);
@@ -179,7 +175,7 @@ std::vector<std::optional<PredictedLine>> LineFlow::predict(const std::vector<Ca
   std::vector<std::optional<PredictedLine>> predicted(lines.size());
   if (lines.empty()) return predicted;
   std::vector<PredictedLine> followed =
-      follow(lines, pyramid, gyro, points, {params_.window_px, params_.flow_levels, true, params_.max_jump_px});
+      follow(lines, pyramid, gyro, points, {params_.window_px, params_.flow_levels, params_.max_jump_px});
 
   // A camera that is jerked surprises all lines, another edge just one: what the lines of this frame have in common
   // says how far each may be off.
@@ -200,7 +196,7 @@ std::vector<std::optional<PredictedLine>> LineFlow::predict(const std::vector<Ca
       index.push_back(i);
     }
   if (!again.empty()) {
-    const Reach further{std::max(params_.window_px, pyramid.windowPx()), pyramid.levels(), false, 1.5 * limit_px};
+    const Reach further{std::max(params_.window_px, pyramid.windowPx()), pyramid.levels(), 1.5 * limit_px};
     const std::vector<PredictedLine> second = follow(again, pyramid, gyro, points, further);
     for (std::size_t k = 0; k < index.size(); ++k) followed[index[k]] = second[k];
   }

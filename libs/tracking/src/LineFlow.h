@@ -54,14 +54,12 @@ class LineFlow {
   /// How far optical flow looks.
   struct Reach {
     int window_px, levels;
-    bool few;        ///< samples on lines whose depth says where they are
     double jump_px;  ///< largest distance from where a line with a history is expected
   };
   std::vector<PredictedLine> follow(const std::vector<CarriedLine>& lines, const ImagePyramid& pyramid,
                                     const GyroPrediction& gyro, const PointMotion& points, const Reach& reach) const;
   static double typicalSurprise(const std::vector<CarriedLine>& lines, const std::vector<PredictedLine>& followed);
-  Samples sample(const std::vector<CarriedLine>& lines, const GyroPrediction& gyro, const PointMotion& points,
-                 bool few) const;
+  Samples sample(const std::vector<CarriedLine>& lines, const GyroPrediction& gyro, const PointMotion& points) const;
 
   PredictedLine fit(const Samples& samples, std::size_t index, double jump_px, const std::vector<cv::Point2f>& to,
                     const std::vector<unsigned char>& found) const;

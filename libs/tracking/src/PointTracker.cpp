@@ -13,7 +13,6 @@ namespace lintel {
 namespace {
 
 constexpr double kMinEigenvalue = 1e-4;  ///< OpenCV's default: patches without texture fail
-constexpr double kConverged_px = 0.02;   ///< a step of KLT below this is the last one
 constexpr int kSteadyLevels = 2;         ///< for points whose motion is known
 constexpr int kBackwardLevels = 1;       ///< the way back starts at the answer
 
@@ -73,8 +72,7 @@ void PointTracker::followFrom(const ImagePyramid& pyramid, const std::vector<std
   std::vector<cv::Point2f> back = from;
   std::vector<unsigned char> found, returned;
   const cv::Size window(params_.window_px, params_.window_px);
-  const cv::TermCriteria criteria(cv::TermCriteria::COUNT | cv::TermCriteria::EPS, params_.max_iterations,
-                                  kConverged_px);
+  const cv::TermCriteria criteria(cv::TermCriteria::COUNT | cv::TermCriteria::EPS, params_.max_iterations, 0.01);
   const int top = std::min(levels, pyramid.levels()) - 1;
   cv::calcOpticalFlowPyrLK(pyramid.previous(), pyramid.current(), from, to, found, cv::noArray(), window, top, criteria,
                            cv::OPTFLOW_USE_INITIAL_FLOW, kMinEigenvalue);

@@ -131,9 +131,9 @@ TEST(FrontEnd, parallelEdgesAtDifferentDepthsThatCrossKeepTheirNames) {
   const auto wall = testing::blobs(11);
   const double near_x = -0.35, far_x = -0.15;
   const std::vector<testing::Layer> layers = {
-      {2.0, post(near_x, 0.08, 150)},
-      {3.5, post(far_x, 0.5, 200)},
-      {6.0, [&](const Eigen::Vector2d& at) -> std::optional<double> { return 0.4 * wall(at); }}};
+      {2.0, post(near_x, 0.08, 150)}, {3.5, post(far_x, 0.5, 200)}, {6.0, [&](const Eigen::Vector2d& at) -> std::optional<double> {
+                                                            return 0.4 * wall(at);
+                                                          }}};
   const Rig rig = testing::testRig();
   FrontEnd front_end(rig, linesAtOnce());
   std::map<TrackId, std::set<char>> seen_on;
