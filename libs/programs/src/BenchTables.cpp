@@ -160,7 +160,8 @@ Table trackingTable(const BenchSuite& suite, const BenchResults& results) {
                       {"points used", statsFigure("/mean_points_used", 1)},
                       {"lines tracked", statsFigure("/mean_lines_tracked", 1)},
                       {"well determined", statsFigure("/mean_lines_used", 1)},
-                      {"degenerate", statsFigure("/mean_lines_degenerate", 1)}});
+                      {"degenerate", statsFigure("/mean_lines_degenerate", 1)},
+                      {"of them constrained", statsFigure("/mean_lines_constrained", 1)}});
 }
 
 Table relativeTable(const BenchSuite& suite, const BenchResults& results) {
@@ -244,7 +245,7 @@ nlohmann::ordered_json figuresOf(const BenchRun& run) {
   json["evaluation"] = run.evaluation;
   if (!run.evaluation_refined.is_null()) json["evaluation_refined"] = run.evaluation_refined;
   for (const char* key : {"frames", "frames_with_pose", "keyframes", "first_pose_s", "resets", "reset_reasons",
-                          "mean_points_used", "mean_lines_tracked", "mean_lines_used", "mean_lines_degenerate",
+                          "mean_points_used", "mean_lines_tracked", "mean_lines_used", "mean_lines_degenerate", "mean_lines_constrained",
                           "map_points", "map_lines", "tracking", "warnings"})
     if (run.stats.contains(key)) json["stats"][key] = run.stats[key];
   return json;

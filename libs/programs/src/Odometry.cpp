@@ -54,7 +54,8 @@ class BackEnd {
     s.keyframes = result_.map.keyframes.size();
     if (s.window_frames == 0) return;
     const auto n = static_cast<double>(s.window_frames);
-    for (double* mean : {&s.mean_points_used, &s.mean_lines_tracked, &s.mean_lines_used, &s.mean_lines_degenerate})
+    for (double* mean : {&s.mean_points_used, &s.mean_lines_tracked, &s.mean_lines_used, &s.mean_lines_degenerate,
+                         &s.mean_lines_constrained})
       *mean /= n;
   }
 
@@ -97,6 +98,7 @@ class BackEnd {
     s.mean_lines_tracked += update.lines_tracked;
     s.mean_lines_used += update.lines_used;
     s.mean_lines_degenerate += update.lines_degenerate;
+    s.mean_lines_constrained += update.lines_constrained;
   }
 
   Rig rig_;

@@ -26,7 +26,7 @@ struct OdometryStatistics {
   std::size_t frames = 0, frames_with_pose = 0, window_frames = 0, keyframes = 0, resets = 0;
   std::int64_t first_frame_ns = 0, last_frame_ns = 0;
   double first_pose_s = -1;  ///< after the first frame
-  double mean_points_used = 0, mean_lines_tracked = 0, mean_lines_used = 0, mean_lines_degenerate = 0;
+  double mean_points_used = 0, mean_lines_tracked = 0, mean_lines_used = 0, mean_lines_degenerate = 0, mean_lines_constrained = 0;
   std::vector<std::string> failures;  ///< time and reason of each reset
   std::string last_wait;              ///< what initialisation waited for last
   StageClock decoding, tracking, estimation, refinement;

@@ -63,7 +63,7 @@ class Report {
   Report(const RunRecord& record, const OdometryResult& result, const RunSeries& series)
       : record_(record), result_(result), frames_(series.frames()), series_(series),
         page_("Run on " + nameOf(record.input)),
-        poses_(stampedPoses(result.trajectory)) {
+        poses_(stampedPoses(result.trajectory)), refined_(stampedPoses(result.refined_trajectory)) {
     if (!frames_.empty()) t0_ns_ = frames_.front().t_ns;
     if (poses_.empty() || record.groundtruth.empty()) return;
     TrajectoryErrorParams params;
@@ -71,6 +71,7 @@ class Report {
     params.to_ns = result.statistics.last_frame_ns;
     try {
       errors_ = evaluateTrajectory(poses_, record.groundtruth, params);
+      if (!refined_.empty()) refined_errors_ = evaluateTrajectory(refined_, record.groundtruth, params);
     } catch (const EvaluationError& error) {
       truth_fault_ = error.what();
     }
@@ -119,6 +120,8 @@ class Report {
     table.rows.push_back({"map", std::to_string(result_.map.lines.size()) + " lines, " +
                                      std::to_string(result_.map.points.size()) + " points, " +
                                      std::to_string(result_.map.keyframes.size()) + " keyframes"});
+    const std::string& verdict = result_.refinement.verdict;
+    table.rows.push_back({"refinement", verdict.empty() ? "left out" : verdict});
     table.rows.push_back({"starts anew", std::to_string(s.resets)});
     table.rows.push_back({"speed", fixedText(static_cast<double>(s.frames) / std::max(record_.wall_s, 1e-3), 0) +
                                        " frames/s, " + durationText(record_.wall_s)});
@@ -138,12 +141,16 @@ class Report {
       estimate = moved(poses_, errors_->S_truth_estimate);
     }
     drawn.push_back({"causal", estimate, ""});
+    if (refined_errors_) drawn.push_back({"refined", moved(refined_, refined_errors_->S_truth_estimate), ""});
+    NamedErrors errors;
+    if (errors_) errors.emplace_back("causal", *errors_);
+    if (refined_errors_) errors.emplace_back("refined", *refined_errors_);
     page_.beginGallery();
     page_.figure(topView(drawn), errors_ ? "From above, laid onto the ground truth" : "From above");
     page_.figure(heightOverTime(drawn, t0_ns_), "Height over time");
-    if (errors_) page_.figure(errorOverTime({{"error", *errors_}}), "Position error over time");
+    if (errors_) page_.figure(errorOverTime(errors), "Position error over time");
     if (errors_)
-      page_.figure(relativeErrorBoxes({{"causal", *errors_}}), "Relative errors: median, middle half, from 5 % to 95 %");
+      page_.figure(relativeErrorBoxes(errors), "Relative errors: median, middle half, from 5 % to 95 %");
     page_.figure(speed(), "Speed over time");
     page_.endGallery();
     if (errors_) errorTable();
@@ -154,8 +161,13 @@ class Report {
   }
 
   void errorTable() {
-    Table table{"errors", "Against the ground truth of the recording", {"figure", "value"}, {}, {}};
+    Table table{"errors", "Against the ground truth of the recording", {"figure", "causal"}, {}, {}};
     for (const auto& row : trajectoryRows(*errors_)) table.rows.push_back({row[0], row[1]});
+    if (refined_errors_) {
+      table.columns.emplace_back("refined");
+      const auto refined = trajectoryRows(*refined_errors_);
+      for (std::size_t i = 0; i < refined.size(); ++i) table.rows[i].emplace_back(refined[i][1]);
+    }
     page_.table(table);
   }
 
@@ -201,7 +213,8 @@ class Report {
                     over("lines", false, [](const RunFrame& f) { return double(f.lines_tracked); })};
     window.curves = {over("points", true, [](const RunFrame& f) { return double(f.points_used); }),
                      over("well determined lines", true, [](const RunFrame& f) { return double(f.lines_used); }),
-                     over("degenerate lines", true, [](const RunFrame& f) { return double(f.lines_degenerate); })};
+                     over("degenerate lines", true, [](const RunFrame& f) { return double(f.lines_degenerate); }),
+                     over("of them constrained", true, [](const RunFrame& f) { return double(f.lines_constrained); })};
     page_.beginGallery();
     for (Figure* figure : {&image, &window}) {
       figure->from_zero = true;
@@ -301,9 +314,9 @@ class Report {
   const std::vector<RunFrame>& frames_;
   const RunSeries& series_;
   HtmlPage page_;
-  StampedPoses poses_;
+  StampedPoses poses_, refined_;
   std::int64_t t0_ns_ = 0;
-  std::optional<TrajectoryErrors> errors_;
+  std::optional<TrajectoryErrors> errors_, refined_errors_;
   std::string truth_fault_;
 };
 

@@ -14,7 +14,7 @@ struct RunFrame {
   std::int64_t t_ns = 0;
   int points_tracked = 0, lines_tracked = 0;  ///< in the image
   bool in_window = false;                     ///< the figures below are there
-  int points_used = 0, lines_used = 0, lines_degenerate = 0;
+  int points_used = 0, lines_used = 0, lines_degenerate = 0, lines_constrained = 0;
   double speed_m_s = 0;
   bool at_rest = false, lost = false;
   ImuBias bias;
@@ -33,6 +33,7 @@ class RunSeries {
     frame.points_used = update.points_used;
     frame.lines_used = update.lines_used;
     frame.lines_degenerate = update.lines_degenerate;
+    frame.lines_constrained = update.lines_constrained;
     frame.speed_m_s = update.v_w_b.norm();
     frame.at_rest = update.at_rest;
     frame.bias = update.bias;

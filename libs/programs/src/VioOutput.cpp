@@ -106,6 +106,7 @@ std::string statisticsJson(const OdometryResult& result, double wall_s, const st
       {"mean_lines_tracked", s.mean_lines_tracked},
       {"mean_lines_used", s.mean_lines_used},
       {"mean_lines_degenerate", s.mean_lines_degenerate},
+      {"mean_lines_constrained", s.mean_lines_constrained},
       {"map_points", result.map.points.size()},
       {"map_lines", result.map.lines.size()},
       {"refinement", refinementJson(result)},
