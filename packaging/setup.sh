@@ -33,7 +33,7 @@ missing_packages() {
 as_root() {
   if [ "$(id -u)" -eq 0 ]; then "$@"
   elif command -v sudo >/dev/null 2>&1; then sudo "$@"
-  else die "packages are missing and need root or sudo to be installed: apt-get install $(missing_packages build test runtime | tr '\n' ' ')"
+  else die "packages are missing and need root or sudo to be installed: apt-get install $packages"
   fi
 }
 
