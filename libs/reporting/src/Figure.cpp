@@ -11,6 +11,8 @@ namespace lintel {
 
 namespace {
 
+constexpr const char* kNoGnuplot = "plots need gnuplot: install gnuplot-nox";
+
 std::string number(double value) {
   char text[32];
   std::snprintf(text, sizeof text, "%.7g", value);
@@ -119,15 +121,8 @@ std::string reasonIn(const std::string& text) {
   return from == std::string::npos ? text.substr(0, 200) : text.substr(from, text.find('\n', from) - from);
 }
 
-}  // namespace
-
-std::string plotColour(std::size_t index) {
-  constexpr std::array<const char*, 8> kColours{"#0072b2", "#d55e00", "#009e73", "#cc79a7",
-                                                "#e69f00", "#56b4e9", "#7f7f00", "#444444"};
-  return kColours[index % kColours.size()];
-}
-
-std::string svgOf(const Figure& figure) {
+/// What gnuplot reads to draw the figure; empty when there is nothing to draw.
+std::string scriptOf(const Figure& figure) {
   Script script;
   std::size_t place = 0;
   for (const Curve& curve : figure.curves) {
@@ -140,13 +135,73 @@ std::string svgOf(const Figure& figure) {
                          titleWord(series.title) + " whiskerbars 0.5");
     script.add(data, " using 1:4:4:4:4:7 with candlesticks lw 2.5 lc rgb " + colour + " notitle");  // the median
   }
-  if (script.empty()) throw PlotError("nothing to draw");
-  const ChildResult drawn = runChild({{"gnuplot", "-d", "-"}, script.text(settingsOf(figure)), "", {"LC_ALL=C.UTF-8"}});
-  if (drawn.exit_code == 127) throw PlotError("plots need gnuplot: install gnuplot-nox");
-  const std::size_t begin = drawn.output.find("<svg"), end = drawn.output.rfind("</svg>");
-  if (drawn.exit_code != 0 || begin == std::string::npos || end == std::string::npos)
-    throw PlotError("gnuplot could not draw '" + figure.title + "': " + reasonIn(drawn.errors));
-  return drawn.output.substr(begin, end + 6 - begin) + "\n";
+  return script.empty() ? "" : script.text(settingsOf(figure));
+}
+
+ChildResult runGnuplot(const std::string& script) {
+  return runChild({{"gnuplot", "-d", "-"}, script, "", {"LC_ALL=C.UTF-8"}});
+}
+
+std::vector<std::string> picturesIn(const std::string& output) {
+  std::vector<std::string> pictures;
+  for (std::size_t begin = output.find("<svg"); begin != std::string::npos; begin = output.find("<svg", begin)) {
+    const std::size_t end = output.find("</svg>", begin);
+    if (end == std::string::npos) break;
+    pictures.push_back(output.substr(begin, end + 6 - begin) + "\n");
+    begin = end;
+  }
+  return pictures;
+}
+
+/// The pictures of a script; none where gnuplot is missing or stopped half way.
+std::vector<std::string> draw(const std::string& script) {
+  const ChildResult result = runGnuplot(script);
+  return result.exit_code == 0 ? picturesIn(result.output) : std::vector<std::string>();
+}
+
+DrawnFigure drawAlone(const Figure& figure) {
+  const ChildResult result = runGnuplot(scriptOf(figure));
+  if (result.exit_code == 127) return {"", kNoGnuplot};
+  const std::vector<std::string> pictures = picturesIn(result.output);
+  if (result.exit_code == 0 && pictures.size() == 1) return {pictures.front(), ""};
+  return {"", "gnuplot could not draw '" + figure.title + "': " + reasonIn(result.errors)};
+}
+
+}  // namespace
+
+std::string plotColour(std::size_t index) {
+  constexpr std::array<const char*, 8> kColours{"#0072b2", "#d55e00", "#009e73", "#cc79a7",
+                                                "#e69f00", "#56b4e9", "#7f7f00", "#444444"};
+  return kColours[index % kColours.size()];
+}
+
+std::string svgOf(const Figure& figure) {
+  const DrawnFigure drawn = svgsOf({figure}).front();
+  if (!drawn.fault.empty()) throw PlotError(drawn.fault);
+  return drawn.svg;
+}
+
+std::vector<DrawnFigure> svgsOf(const std::vector<Figure>& figures) {
+  std::vector<DrawnFigure> drawn(figures.size());
+  std::string all;
+  std::vector<std::size_t> asked;
+  for (std::size_t i = 0; i < figures.size(); ++i) {
+    const std::string script = scriptOf(figures[i]);
+    if (script.empty()) drawn[i].fault = "nothing to draw";
+    if (script.empty()) continue;
+    all += script + "reset session\n";
+    asked.push_back(i);
+  }
+  if (asked.empty()) return drawn;
+  const std::vector<std::string> pictures = draw(all);
+  for (std::size_t k = 0; k < asked.size(); ++k) {
+    DrawnFigure& result = drawn[asked[k]];
+    if (pictures.size() == asked.size())
+      result.svg = pictures[k];
+    else  // gnuplot stops at what it does not like: find out where
+      result = drawAlone(figures[asked[k]]);
+  }
+  return drawn;
 }
 
 std::vector<PlotPoint> thinned(const std::vector<PlotPoint>& points, std::size_t count) {

@@ -104,14 +104,28 @@ void HtmlPage::folded(std::string_view summary, std::string_view text) {
 }
 
 void HtmlPage::figure(const Figure& figure, std::string_view description) {
-  if (plots_missing_) return;
-  try {
-    body_ += imageFigure("data:image/svg+xml," + percentEncoded(svgOf(figure)), description);
-  } catch (const PlotError& error) {
-    const std::string what = error.what();
-    plots_missing_ = what.find("install") != std::string::npos;
-    body_ += "<p class=\"note\">No picture (" + escaped(description) + "): " + escaped(what) + "</p>\n";
+  figures_.push_back({body_.size(), figure, std::string(description)});
+}
+
+/// The body with its figures, which are drawn together.
+std::string HtmlPage::bodyWithFigures() const {
+  std::vector<Figure> figures;
+  for (const PlacedFigure& placed : figures_) figures.push_back(placed.figure);
+  const std::vector<DrawnFigure> drawn = svgsOf(figures);
+  std::string body;
+  std::size_t done = 0;
+  bool plots_missing = false;
+  for (std::size_t i = 0; i < figures_.size(); ++i) {
+    const PlacedFigure& placed = figures_[i];
+    body.append(body_, done, placed.place - done);
+    done = placed.place;
+    if (drawn[i].fault.empty())
+      body += imageFigure("data:image/svg+xml," + percentEncoded(drawn[i].svg), placed.description);
+    else if (!plots_missing)
+      body += "<p class=\"note\">No picture (" + escaped(placed.description) + "): " + escaped(drawn[i].fault) + "</p>\n";
+    plots_missing = plots_missing || drawn[i].fault.find("install") != std::string::npos;
   }
+  return body.append(body_, done, std::string::npos);
 }
 
 void HtmlPage::picture(std::string_view png, std::string_view description) {
@@ -133,7 +147,7 @@ std::string HtmlPage::text() const {
       page += "<a href=\"#s" + std::to_string(i + 1) + "\">" + escaped(sections_[i]) + "</a> ";
     page += "</nav>\n";
   }
-  return page + body_ + "</body>\n</html>\n";
+  return page + bodyWithFigures() + "</body>\n</html>\n";
 }
 
 }  // namespace lintel

@@ -63,6 +63,14 @@ std::string plotColour(std::size_t index);
 /// The figure as an SVG picture, drawn by gnuplot. Throws PlotError where gnuplot is missing or refuses.
 std::string svgOf(const Figure& figure);
 
+/// A figure as a picture, or one line why there is none.
+struct DrawnFigure {
+  std::string svg, fault;
+};
+
+/// The same for several at once, much cheaper than one by one: starting gnuplot takes longer than most plots.
+std::vector<DrawnFigure> svgsOf(const std::vector<Figure>& figures);
+
 /// At most `count` of the points, evenly spread, both ends kept: a plot of 100000 points shows no more than 2000.
 std::vector<PlotPoint> thinned(const std::vector<PlotPoint>& points, std::size_t count = 2000);
 

@@ -41,9 +41,16 @@ class HtmlPage {
   std::string text() const;
 
  private:
+  struct PlacedFigure {
+    std::size_t place;  ///< in the body
+    Figure figure;
+    std::string description;
+  };
+  std::string bodyWithFigures() const;
+
   std::string title_, body_;
   std::vector<std::string> sections_;
-  bool plots_missing_ = false;
+  std::vector<PlacedFigure> figures_;  ///< drawn when the page is asked for, all at once
 };
 
 }  // namespace lintel
