@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "BenchJobs.h"
 
+#include <cstdio>
 #include <fstream>
 #include <iterator>
 
