@@ -108,7 +108,7 @@ class SceneBuilder {
     scene->mRootNode = root;
     addLines(*root);
     for (const DrawnPart& part : drawing_.parts) {
-      if (part.layer != MapLayer::kLines) addPart(part, part.name, *root);
+      if (part.layer != MapLayer::kLines) addPart(part, *root);
     }
     if (materials_.empty()) materialOf(true);  // assimp wants one even for an empty map
     scene->mNumMeshes = static_cast<unsigned>(meshes_.size());
@@ -133,16 +133,16 @@ class SceneBuilder {
     for (const DrawnPart& part : drawing_.parts) {
       if (part.layer != MapLayer::kLines) continue;
       if (!lines) lines = addNode("Lines", root);
-      addPart(part, "Lines " + part.name, *lines);
+      addPart(part, *lines);
     }
   }
 
-  void addPart(const DrawnPart& part, const std::string& name, aiNode& parent) {
+  void addPart(const DrawnPart& part, aiNode& parent) {
     MeshParts parts;
-    parts.name = name;
+    parts.name = part.name;
     for (const DrawnSegment& s : part.segments) parts.add(s, drawing_);
     for (const DrawnPoint& p : part.points) parts.add(p, drawing_);
-    aiNode* node = addNode(name, parent);
+    aiNode* node = addNode(part.name, parent);
     if (parts.indices.empty()) return;  // every tube too thin for single precision
     node->mNumMeshes = 1;
     node->mMeshes = new unsigned[1]{static_cast<unsigned>(meshes_.size())};

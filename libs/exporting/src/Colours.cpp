@@ -70,13 +70,14 @@ Rgb LineColouring::operator()(const MapLine& line) const {
   return scaleColour((shown(line) - low_) / (high_ - low_));
 }
 
-std::vector<std::pair<std::string, Rgb>> LineColouring::legend(const std::vector<const MapLine*>& lines) const {
+std::vector<std::pair<std::string, Rgb>> LineColouring::legend(const std::vector<const MapLine*>& lines,
+                                                               const GroupNames& names) const {
   std::map<std::string, Rgb> found;
   for (const MapLine* line : lines) {
     if (mode_ == LineColour::kKind)
       found[line->constrained ? "direction from group" : line->degenerate ? "degenerate" : "free"] = (*this)(*line);
     if (mode_ == LineColour::kGroup)
-      found[line->group < 0 ? "no group" : "group " + std::to_string(line->group)] = (*this)(*line);
+      found[names(line->group)] = (*this)(*line);
   }
   std::vector<std::pair<std::string, Rgb>> entries(found.begin(), found.end());
   const bool scale = mode_ == LineColour::kUncertainty || mode_ == LineColour::kHeight;

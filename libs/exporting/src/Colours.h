@@ -6,6 +6,7 @@
 #include <utility>
 #include <vector>
 
+#include "GroupNames.h"
 #include "lintel/exporting/MapExport.h"
 #include "lintel/mapping/LineMap.h"
 
@@ -33,7 +34,8 @@ class LineColouring {
   Rgb operator()(const MapLine& line) const;
 
   /// What the colours mean: those that occur among `lines`, or the ends and middle of the scale.
-  std::vector<std::pair<std::string, Rgb>> legend(const std::vector<const MapLine*>& lines) const;
+  std::vector<std::pair<std::string, Rgb>> legend(const std::vector<const MapLine*>& lines,
+                                                  const GroupNames& names) const;
 
  private:
   double shown(const MapLine& line) const;

@@ -5,10 +5,11 @@
 namespace lintel {
 
 OutputFiles csvFiles(const Drawing& drawing, const std::string& path) {
+  const GroupNames names(*drawing.map);
   Text text;
   text
       << "id,x0,y0,z0,x1,y1,z1,observations,first_s,last_s,sigma_direction_rad,sigma_distance_m,degenerate,constrained,"
-         "group\n";
+         "group,group_name\n";
   for (const MapLine* line : drawing.lines) {
     const auto& [a, b] = line->segment_w;
     text << line->id;
@@ -17,7 +18,7 @@ OutputFiles csvFiles(const Drawing& drawing, const std::string& path) {
     text.seconds(line->first_t_ns) << ',';
     text.seconds(line->last_t_ns) << ',' << line->sigma_direction_rad << ',' << line->sigma_distance_m << ','
                                   << (line->degenerate ? 1 : 0) << ',' << (line->constrained ? 1 : 0) << ','
-                                  << line->group << '\n';
+                                  << line->group << ',' << names(line->group) << '\n';
   }
   return {{path, std::move(text.bytes())}};
 }

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <map>
 
+#include "GroupNames.h"
 #include "Quantile.h"
 
 namespace lintel {
@@ -45,14 +46,15 @@ void selectLines(const LineMap& map, const ExportParams& params, Drawing& drawin
 
 void addLines(const ExportParams& params, Drawing& drawing) {
   const LineColouring colouring(params.colour, drawing.lines);
-  drawing.legend = colouring.legend(drawing.lines);
+  const GroupNames names(*drawing.map);
+  drawing.legend = colouring.legend(drawing.lines, names);
   std::map<int, DrawnPart> groups;
   for (const MapLine* line : drawing.lines) {
     const int group = std::max(line->group, -1);
     groups[group].segments.push_back({line->segment_w.start, line->segment_w.end, colouring(*line), line});
   }
   for (auto& [group, part] : groups) {
-    part.name = group < 0 ? "No group" : "Group " + std::to_string(group);
+    part.name = "Lines " + names(group);
     part.group = group;
     drawing.parts.push_back(std::move(part));
   }

@@ -59,8 +59,8 @@ int colourIndex(Rgb c) {
 }
 
 std::string layerName(const DrawnPart& part) {
-  std::string name = part.layer == MapLayer::kLines ? "LINES_" + part.name : part.name;
-  for (char& c : name) c = c == ' ' ? '_' : static_cast<char>(std::toupper(static_cast<unsigned char>(c)));
+  std::string name = part.name;
+  for (char& c : name) c = c == ' ' || c == '.' ? '_' : static_cast<char>(std::toupper(static_cast<unsigned char>(c)));
   return name;
 }
 

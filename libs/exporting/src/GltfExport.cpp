@@ -62,7 +62,7 @@ std::string joinGlb(const Glb& glb) {
 }
 
 /// What is known of each line of a part, by column: element i belongs to the mesh's segment i.
-Json lineData(const DrawnPart& part) {
+Json lineData(const Drawing& drawing, const DrawnPart& part) {
   Json ids = Json::array(), observations = Json::array(), direction = Json::array(), distance = Json::array(),
        degenerate = Json::array(), constrained = Json::array();
   const auto finite = [](double v) { return std::isfinite(v) ? Json(static_cast<float>(v)) : Json(nullptr); };
@@ -71,9 +71,14 @@ Json lineData(const DrawnPart& part) {
     direction.push_back(finite(s.line->sigma_direction_rad)), distance.push_back(finite(s.line->sigma_distance_m));
     degenerate.push_back(s.line->degenerate ? 1 : 0), constrained.push_back(s.line->constrained ? 1 : 0);
   }
-  return {{"group", part.group},          {"id", ids},
-          {"observations", observations}, {"sigma_direction_rad", direction},
-          {"sigma_distance_m", distance}, {"degenerate", degenerate},
+  const GroupNames names(*drawing.map);
+  return {{"group", part.group},
+          {"group_name", names(part.group)},
+          {"id", ids},
+          {"observations", observations},
+          {"sigma_direction_rad", direction},
+          {"sigma_distance_m", distance},
+          {"degenerate", degenerate},
           {"constrained", constrained}};
 }
 
@@ -95,8 +100,8 @@ void addExtras(const Drawing& drawing, Json& json) {
   if (!json.contains("nodes")) return;
   for (Json& node : json["nodes"]) {
     for (const DrawnPart& part : drawing.parts) {
-      if (part.layer == MapLayer::kLines && node.value("name", "") == "Lines " + part.name)
-        node["extras"] = lineData(part);
+      if (part.layer == MapLayer::kLines && node.value("name", "") == part.name)
+        node["extras"] = lineData(drawing, part);
       if (part.layer == MapLayer::kKeyframes && node.value("name", "") == part.name)
         node["extras"] = keyframeData(drawing);
     }

@@ -84,6 +84,7 @@ Json coloursData(const Drawing& drawing) {
                                                       {"group", LineColour::kGroup},
                                                       {"uncertainty", LineColour::kUncertainty},
                                                       {"height", LineColour::kHeight}};
+  const GroupNames names(*drawing.map);
   for (const auto& [name, mode] : modes) {
     if (mode == drawing.colour) data["colour"] = name;
     const LineColouring colouring(mode, drawing.lines);
@@ -93,7 +94,7 @@ Json coloursData(const Drawing& drawing) {
       for (const std::uint8_t v : {c.r, c.g, c.b}) rgb.push_back(static_cast<char>(v));
     }
     Json legend = Json::array();
-    for (const auto& [text, colour] : colouring.legend(drawing.lines)) legend.push_back({text, cssColour(colour)});
+    for (const auto& [text, colour] : colouring.legend(drawing.lines, names)) legend.push_back({text, cssColour(colour)});
     data["colours"][name] = {{"rgb", base64(rgb)}, {"legend", legend}};
   }
   return data;
@@ -133,6 +134,11 @@ Json mapData(const Drawing& drawing) {
   data["centre"] = {centre.x(), centre.y(), centre.z()};
   data["extent"] = std::max(drawing.core.diagonal().norm(), 1e-3);
   data["lines"] = linesData(drawing, origin_ns);
+  data["groups"] = Json::array();
+  const GroupNames names(map);
+  for (const DrawnPart& part : drawing.parts) {
+    if (part.layer == MapLayer::kLines) data["groups"].push_back({{"group", part.group}, {"name", names(part.group)}});
+  }
   data["points"] = points.text();
   data["keyframes"] = keyframes.text();
   data["keyframe_count"] = drawing.summary.keyframes;

@@ -21,6 +21,7 @@ class JsonWriter {
     string(map.configuration);
     text_ << ",\n\"rig\": ";
     writeRig(map.rig);
+    writeGroups(map);
     list("keyframes", drawing_.keyframes, [this](const MapKeyframe* keyframe) { writeKeyframe(*keyframe); });
     list("points", points(), [this](const MapPoint* point) { writePoint(*point); });
     list("lines", drawing_.lines, [this](const MapLine* line) { writeLine(*line); });
@@ -32,6 +33,18 @@ class JsonWriter {
   }
 
  private:
+  void writeGroups(const LineMap& map) {
+    const GroupNames names(map);
+    int place = 0;
+    std::vector<const MapGroup*> groups;
+    for (const MapGroup& group : map.groups) groups.push_back(&group);
+    list("groups", groups, [&](const MapGroup* group) {
+      text_ << "{\"name\": ";
+      string(names(place++));
+      vectorField("direction", group->direction_w), field("spread_rad", group->spread_rad), text_ << '}';
+    });
+  }
+
   std::vector<const MapPoint*> points() const {
     std::vector<const MapPoint*> found;
     for (const DrawnPart& part : drawing_.parts) {

@@ -63,7 +63,7 @@ class ObjWriter {
   }
 
   static std::string objectName(const DrawnPart& part) {
-    std::string name = part.layer == MapLayer::kLines ? "Lines_" + part.name : part.name;
+    std::string name = part.name;
     for (char& c : name) c = c == ' ' ? '_' : c;
     return name;
   }

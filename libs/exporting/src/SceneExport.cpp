@@ -37,7 +37,7 @@ void addSegments(const DrawnPart& part, CSetOfObjects& scene) {
     lines->appendLine(s.start.x(), s.start.y(), s.start.z(), s.end.x(), s.end.y(), s.end.z());
   }
   for (const auto& [colour, lines] : by_colour) {
-    lines->setName(part.layer == MapLayer::kLines ? "Lines " + part.name : part.name);
+    lines->setName(part.name);
     scene.insert(lines);
   }
 }

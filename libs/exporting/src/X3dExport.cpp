@@ -41,7 +41,7 @@ void writeShape(std::string_view geometry, std::string_view fields, X3dShape& sh
 }
 
 void writePart(const Drawing& drawing, const DrawnPart& part, Text& text) {
-  std::string name = part.layer == MapLayer::kLines ? "Lines_" + part.name : part.name;
+  std::string name = part.name;
   for (char& c : name) c = std::isalnum(static_cast<unsigned char>(c)) ? c : '_';
   text << "<Group DEF='" << name << "'>\n";
   X3dShape shape, points;

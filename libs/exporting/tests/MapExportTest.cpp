@@ -96,7 +96,7 @@ TEST_F(MapExport, GlbGivesTheSameSegmentsBackUnderNamedNodes) {
   const Reimported all = reimport(in("map.glb"));
   EXPECT_EQ(all.points.size(), 300u);
   EXPECT_EQ(all.segments.size(), kRoom.lines.size() + 20 * 8 + 199);
-  EXPECT_THAT(all.nodes, ::testing::IsSupersetOf({"Map", "Lines", "Lines No group", "Lines Group 0", "Lines Group 2",
+  EXPECT_THAT(all.nodes, ::testing::IsSupersetOf({"Map", "Lines", "Lines no group", "Lines group 0", "Lines group 2",
                                                   "Points", "Keyframes", "Trajectory"}));
   params.style = LineStyle::kTubes;
   exportMap(kRoom, in("tubes.glb"), params);
@@ -197,11 +197,11 @@ TEST_F(MapExport, CsvHoldsTheColumnsLosslessly) {
   const std::string text = content(in("map.csv"));
   EXPECT_EQ(text.substr(0, text.find('\n')),
             "id,x0,y0,z0,x1,y1,z1,observations,first_s,last_s,sigma_direction_rad,sigma_distance_m,degenerate,"
-            "constrained,group");
+            "constrained,group,group_name");
   EXPECT_THAT(
       text,
       ::testing::HasSubstr(
-          "\n10,0.1,-1e-17,3,1e+10,0.3333333333333333,-0,2,1403636579.763555584,-1.500000000,0.001,0.003,0,1,0\n"));
+          "\n10,0.1,-1e-17,3,1e+10,0.3333333333333333,-0,2,1403636579.763555584,-1.500000000,0.001,0.003,0,1,0,group 0\n"));
   EXPECT_EQ(std::count(text.begin(), text.end(), '\n'), 3);
 }
 

@@ -62,6 +62,12 @@ const std::string kUser = R"(<script>
   boxes[0].click();
   found.withoutLines = await coloured();
   boxes[0].click();
+  const groups = [...document.querySelectorAll('#groups input')];
+  found.groups = groups.map((box) => box.parentNode.textContent.trim());
+  for (const box of groups.slice(1)) box.click();
+  found.oneGroup = await coloured();
+  for (const box of groups.slice(1)) box.click();
+  found.groupsAgain = await coloured();
   const colour = document.getElementById('colour'), pictures = new Set();
   for (const option of colour.options) {
     colour.value = option.value;
@@ -153,6 +159,9 @@ TEST_F(ViewerPage, LayersColoursHoverAndTimeWork) {
   EXPECT_GT(found["withLines"], found["linesOnly"]);
   EXPECT_GT(found["linesOnly"], 1000);
   EXPECT_EQ(found["withoutLines"], 0);
+  EXPECT_EQ(found["groups"][0].get<std::string>().rfind("no group (", 0), 0u) << found["groups"];
+  EXPECT_LT(found["oneGroup"], found["linesOnly"]);
+  EXPECT_EQ(found["groupsAgain"], found["linesOnly"]);
   EXPECT_EQ(found["modes"], 4);
   ASSERT_FALSE(found["hovered"].empty());
   EXPECT_THAT(found["hovered"][0].get<std::string>(),
