@@ -79,8 +79,9 @@ class ProgressCallback : public ceres::IterationCallback {
 }  // namespace
 
 BatchProblem::BatchProblem(const Rig& calibrated, const EstimatorParams& estimator, MapMaterial& material,
-                           const std::vector<bool>& use_point, const std::vector<bool>& use_line)
-    : calibrated_(calibrated), estimator_(estimator), material_(material),
+                           const std::vector<bool>& use_point, const std::vector<bool>& use_line,
+                           std::size_t most_views)
+    : calibrated_(calibrated), estimator_(estimator), material_(material), most_views_(most_views),
       point_loss_(estimator.factors.point_loss_width), line_loss_(estimator.factors.line_loss_width),
       problem_(std::make_unique<ceres::Problem>(problemOptions())) {
   for (std::size_t i = 0; i < material.points.size(); ++i)
@@ -193,6 +194,22 @@ void BatchProblem::addImu() {
   }
 }
 
+namespace {
+
+/// At most `most` of the views that agree, spread evenly over all: a landmark couples every two keyframes that have a
+/// view here, and the hundredth view of a track says little that the others do not.
+template <class View>
+std::vector<const View*> spreadViews(const std::vector<View>& views, std::size_t most) {
+  std::vector<const View*> inliers, result;
+  for (const View& v : views)
+    if (v.inlier) inliers.push_back(&v);
+  if (most < 2 || inliers.size() <= most) return inliers;
+  for (std::size_t i = 0; i < most; ++i) result.push_back(inliers[i * (inliers.size() - 1) / (most - 1)]);
+  return result;
+}
+
+}  // namespace
+
 void BatchProblem::addPoints() {
   priors_.push_back(std::make_unique<UnitLength>());
   ceres::CostFunction* unit_length = priors_.back().get();
@@ -200,8 +217,8 @@ void BatchProblem::addPoints() {
     const PointRecord& point = material_.points[points_[i]];
     const Eigen::Vector3d origin_w = originOf(point.views.front().keyframe);
     problem_->AddResidualBlock(unit_length, nullptr, at(points_at_ + i * kPointSize));
-    for (const PointView& v : point.views) {
-      if (!v.inlier) continue;
+    for (const PointView* view : spreadViews(point.views, most_views_)) {
+      const PointView& v = *view;
       const auto k = static_cast<std::size_t>(keyframe_places_[v.keyframe]);
       point_factors_.emplace_back(v.px, calibrated_.camera, motionOf(material_.keyframes[k]), origin_w,
                                   estimator_.factors.point_sigma_px);
@@ -216,8 +233,8 @@ void BatchProblem::addLines() {
   for (std::size_t i = 0; i < lines_.size(); ++i) {
     const LineRecord& line = material_.lines[lines_[i]];
     const Eigen::Vector3d origin_w = originOf(line.views.front().keyframe);
-    for (const LineView& v : line.views) {
-      if (!v.inlier) continue;
+    for (const LineView* view : spreadViews(line.views, most_views_)) {
+      const LineView& v = *view;
       const auto k = static_cast<std::size_t>(keyframe_places_[v.keyframe]);
       const auto seen = [&](const Eigen::Vector2d& px) {
         return makeObservation(calibrated_.camera, calibrated_.camera.normalise(px));

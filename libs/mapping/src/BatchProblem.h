@@ -24,9 +24,9 @@ namespace lintel {
 /// so that the same sums are made in the same order every run.
 class BatchProblem {
  public:
-  /// `use_point`, `use_line`: which landmarks take part, by place in the material.
+  /// `use_point`, `use_line`: which landmarks take part, by place in the material; `most_views` of each have residuals.
   BatchProblem(const Rig& calibrated, const EstimatorParams& estimator, MapMaterial& material,
-               const std::vector<bool>& use_point, const std::vector<bool>& use_line);
+               const std::vector<bool>& use_point, const std::vector<bool>& use_line, std::size_t most_views);
 
   struct Summary {
     bool usable = false;
@@ -58,6 +58,7 @@ class BatchProblem {
   Rig calibrated_;
   const EstimatorParams& estimator_;
   MapMaterial& material_;
+  std::size_t most_views_;
   std::vector<std::size_t> points_, lines_;     // places in the material
   std::vector<std::int64_t> keyframe_places_;   // by id
   std::vector<double> values_;

@@ -125,7 +125,9 @@ RefinementReport BatchRefinement::adjust(MapMaterial& material, const Refinement
     MapFitting fitting(map_, material);
     fitting.fitAll();
     // The causal poses drifted: what is the same comes together only after a first adjustment.
-    if (round > 0) report.merged += fitting.merge();
+    // Passes that come closer now can be told apart better in the next round; the last one must be right.
+    const bool last = round + 1 == params_.rounds;
+    if (round > 0) report.merged += fitting.merge(last ? 0 : map_.merge.max_drift_px);
     std::vector<bool> use_point, use_line;
     for (const PointRecord& p : material.points)
       use_point.push_back(p.known && static_cast<int>(inliersOf(p)) >= params_.min_views);
@@ -133,10 +135,10 @@ RefinementReport BatchRefinement::adjust(MapMaterial& material, const Refinement
       use_line.push_back(params_.lines && l.known && keyframesOf(l) >= params_.min_views &&
                          l.estimate.sigmaDirection() <= params_.line_max_sigma_direction_rad &&
                          l.estimate.sigmaPosition(0) <= params_.line_max_relative_sigma * l.distance_m);
-    BatchProblem problem(calibrated_, estimator_, material, use_point, use_line);
+    BatchProblem problem(calibrated_, estimator_, material, use_point, use_line,
+                         static_cast<std::size_t>(std::max(0, params_.max_views)));
     if (round == 0) report.imu_before = problem.imuError();
     // landmarks are chosen and judged anew after every round but the last: those need not converge
-    const bool last = round + 1 == params_.rounds;
     const auto summary = problem.solve(params_.max_iterations, last ? 1e-4 : 1e-2, [&](int iteration) {
       if (progress) progress((round + std::min(1.0, static_cast<double>(iteration) / params_.max_iterations)) / params_.rounds);
     });

@@ -39,15 +39,21 @@ double separationPx(const LineView& a, const LineView& b) {
 class LineMerger {
  public:
   LineMerger(const KeyframeCameras& cameras, const LineFitParams& fit, const MergeParams& params,
-             std::vector<LineRecord>& lines)
-      : cameras_(cameras), fit_(fit), params_(params), lines_(lines), roots_(lines.size()), segments_(lines.size()) {
+             double drift_px, std::vector<LineRecord>& lines)
+      : cameras_(cameras), fit_(fit), params_(params), drift_px_(drift_px), lines_(lines), roots_(lines.size()),
+        segments_(lines.size()) {
     std::iota(roots_.begin(), roots_.end(), std::size_t{0});
     for (std::size_t i = 0; i < lines.size(); ++i) segments_[i] = drawn(lines[i]);
   }
 
   int run() {
     int merged = 0;
-    for (const Candidate& candidate : candidates()) merged += tryMerge(rootOf(candidate.a), rootOf(candidate.b));
+    const std::vector<Candidate> all = candidates();
+    for (const Candidate& candidate : all) merged += tryMerge(rootOf(candidate.a), rootOf(candidate.b), 0);
+    if (drift_px_ > 0) {
+      findRivals(all);
+      for (const Candidate& candidate : all) merged += tryMerge(rootOf(candidate.a), rootOf(candidate.b), drift_px_);
+    }
     std::size_t kept = 0;
     for (std::size_t i = 0; i < lines_.size(); ++i) {
       if (roots_[i] != i) continue;
@@ -130,19 +136,56 @@ class LineMerger {
     return apart > 0 && 2 * apart > together;
   }
 
-  bool tryMerge(std::size_t a, std::size_t b) {
+  /// For every line the candidates that are left after merging without drift.
+  void findRivals(const std::vector<Candidate>& candidates) {
+    rivals_.assign(lines_.size(), {});
+    for (const Candidate& candidate : candidates) {
+      const std::size_t a = rootOf(candidate.a), b = rootOf(candidate.b);
+      if (a != b) rivals_[a].push_back(b), rivals_[b].push_back(a);
+    }
+  }
+
+  /// Whether of all lines only `b` can be meant by `a`: others nearly as close would have to be the same as `b`.
+  bool isUnmistakable(std::size_t a, std::size_t b, double score) const {
+    constexpr double kRatio = 2;
+    return std::all_of(rivals_[a].begin(), rivals_[a].end(), [&](std::size_t rival) {
+      const std::size_t c = rootOf(rival);
+      double other = 0;
+      return c == a || c == b || !near(a, c, other) || other > kRatio * score || !seenApart(lines_[b], lines_[c]);
+    });
+  }
+
+  /// Tracks keep the brighter side on one side: start and end of what is the same edge follow each other.
+  bool runTheSameWay(std::size_t a, std::size_t b) const {
+    return segments_[a].direction().dot(segments_[b].direction()) > 0;
+  }
+
+  static bool shareKeyframes(const LineRecord& a, const LineRecord& b) {
+    for (auto i = a.views.begin(), j = b.views.begin(); i != a.views.end() && j != b.views.end();) {
+      if (i->keyframe == j->keyframe) return true;
+      i->keyframe < j->keyframe ? ++i : ++j;
+    }
+    return false;
+  }
+
+  bool tryMerge(std::size_t a, std::size_t b, double drift_px) {
     if (a == b) return false;
     if (b < a) std::swap(a, b);
     const LineRecord &la = lines_[a], &lb = lines_[b];
-    double ignored = 0;
-    if (!near(a, b, ignored) || seenApart(la, lb)) return false;
+    double score = 0;
+    if (!near(a, b, score) || seenApart(la, lb)) return false;
+    if (drift_px > 0 && (shareKeyframes(la, lb) || !runTheSameWay(a, b) || !isUnmistakable(a, b, score) ||
+                         !isUnmistakable(b, a, score)))
+      return false;
     LineRecord joint = la;
     joint.id = std::min(la.id, lb.id);
     joint.views.clear();
     std::merge(la.views.begin(), la.views.end(), lb.views.begin(), lb.views.end(), std::back_inserter(joint.views),
                [](const LineView& x, const LineView& y) { return x.keyframe < y.keyframe; });
     if (lb.views.size() > la.views.size()) joint.estimate = lb.estimate;
-    if (!fitLine(cameras_, fit_, joint) || !explains(joint, la, lb)) return false;
+    LineFitParams fit = fit_;
+    fit.max_error_px += drift_px;
+    if (!fitLine(cameras_, fit, joint) || !explains(joint, la, lb, drift_px)) return false;
     lines_[a] = std::move(joint);
     segments_[a] = drawn(lines_[a]);
     lines_[b] = {};
@@ -151,7 +194,7 @@ class LineMerger {
   }
 
   /// Whether one line does for both: hardly any view is lost and errors stay small.
-  bool explains(const LineRecord& joint, const LineRecord& a, const LineRecord& b) const {
+  bool explains(const LineRecord& joint, const LineRecord& a, const LineRecord& b, double drift_px) const {
     const auto inliers = [](const LineRecord& l) {
       return std::count_if(l.views.begin(), l.views.end(), [](const LineView& v) { return v.inlier; });
     };
@@ -159,29 +202,31 @@ class LineMerger {
     // both must be explained, also where one has many more views than the other
     const auto kept = [&](const LineRecord& part) {
       std::ptrdiff_t n = 0;
-      for (const LineView& v : part.views) n += v.inlier && viewError(cameras_, joint.estimate, v) <= fit_.max_error_px;
+      for (const LineView& v : part.views) n += v.inlier && viewError(cameras_, joint.estimate, v) <= fit_.max_error_px + drift_px;
       return n;
     };
     if (10 * kept(a) < 8 * before_a || 10 * kept(b) < 8 * before_b) return false;
     const double alone = (a.error_px * static_cast<double>(before_a) + b.error_px * static_cast<double>(before_b)) /
                          std::max<double>(1, static_cast<double>(before_a + before_b));
     // a line at a depth in between may nearly do for two: little may be lost against what they have alone
-    return joint.error_px <= std::max(std::min(params_.max_error_px, 1.3 * alone + 0.3), 1.1 * alone);
+    return joint.error_px <= std::max(std::min(params_.max_error_px, 1.3 * alone + 0.3), 1.1 * alone) + 0.5 * drift_px;
   }
 
   const KeyframeCameras& cameras_;
   const LineFitParams& fit_;
   const MergeParams& params_;
+  double drift_px_;
   std::vector<LineRecord>& lines_;
   std::vector<std::size_t> roots_;
   std::vector<Segment3> segments_;
+  std::vector<std::vector<std::size_t>> rivals_;
 };
 
 }  // namespace
 
-int mergeLines(const KeyframeCameras& cameras, const LineFitParams& fit, const MergeParams& params,
+int mergeLines(const KeyframeCameras& cameras, const LineFitParams& fit, const MergeParams& params, double drift_px,
                std::vector<LineRecord>& lines) {
-  return LineMerger(cameras, fit, params, lines).run();
+  return LineMerger(cameras, fit, params, drift_px, lines).run();
 }
 
 }  // namespace lintel

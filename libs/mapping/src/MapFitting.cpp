@@ -2,6 +2,7 @@
 #include "MapFitting.h"
 
 #include "LineMerging.h"
+#include "LineSplitting.h"
 #include "PointMerging.h"
 
 namespace lintel {
@@ -15,12 +16,14 @@ MapFitting::MapFitting(const MapParams& params, MapMaterial& material)
 void MapFitting::fitAll() {
   for (PointRecord& point : material_.points) fitPoint(cameras_, point_, point);
   for (LineRecord& line : material_.lines) fitLine(cameras_, line_, line);
+  if (splitLines(material_.lines) == 0) return;
+  for (LineRecord& line : material_.lines) fitLine(cameras_, line_, line);
 }
 
-int MapFitting::merge() {
+int MapFitting::merge(double drift_px) {
   int merged = 0;
   if (params_.merge.points) merged += mergePoints(cameras_, point_, params_.merge, material_.points);
-  if (params_.merge.lines) merged += mergeLines(cameras_, line_, params_.merge, material_.lines);
+  if (params_.merge.lines) merged += mergeLines(cameras_, line_, params_.merge, drift_px, material_.lines);
   return merged;
 }
 

@@ -15,8 +15,8 @@ class MapFitting {
   /// Every point and line anew from all its views, outliers too: what was rejected once may be right by now.
   void fitAll();
 
-  /// Joins what is the same; returns how many landmarks went.
-  int merge();
+  /// Joins what is the same; returns how many landmarks went. `drift_px`: see mergeLines.
+  int merge(double drift_px = 0);
 
   const KeyframeCameras& cameras() const { return cameras_; }
 

@@ -2,6 +2,7 @@
 #include "lintel/mapping/MapBuilder.h"
 
 #include <gtest/gtest.h>
+#include <malloc.h>
 
 #include <set>
 
@@ -228,6 +229,26 @@ TEST_F(MapBuilderTest, ATrackThatOutlivesARestartGetsAnIdOfItsOwn) {
   }
   EXPECT_LT((map.lines[0].segment_w.start - upright_.start).norm(), 1e-6) << "the first keeps its id";
   EXPECT_EQ(map.lines[0].id, 5u);
+}
+
+TEST_F(MapBuilderTest, AnHourWithoutNewsCostsThePosesOnly) {
+  MapBuilder builder(rig_, params_);
+  builder.add(update_);
+  WindowUpdate frame;
+  frame.status = EstimatorStatus::kTracking;
+  constexpr std::size_t kFrames = 72'000;
+  const auto used = [] {
+    const struct mallinfo2 heap = ::mallinfo2();
+    return heap.uordblks + heap.hblkhd;
+  };
+  const std::size_t before = used();
+  for (std::size_t i = 0; i < kFrames; ++i) {
+    frame.t_ns = static_cast<std::int64_t>(i);
+    builder.add(frame);
+  }
+  constexpr std::size_t kPose = sizeof(std::pair<std::int64_t, Pose>);
+  EXPECT_LE(used() - before, 2 * kFrames * kPose + 1'000'000) << "a list grows by doubling";
+  EXPECT_EQ(builder.material().trajectory.size(), kFrames);
 }
 
 TEST_F(MapBuilderTest, KeepsTheTrajectoryAndTheLastRig) {

@@ -3,6 +3,7 @@
 
 #include "LineExtent.h"
 #include "LineMerging.h"
+#include "LineSplitting.h"
 #include "PointMerging.h"
 #include "SpatialIndex.h"
 #include "TestMaterial.h"
@@ -17,7 +18,7 @@ class MergingTest : public testing::Test {
   int merge(std::vector<LineRecord>& lines) const {
     const KeyframeCameras cameras(material_);
     for (LineRecord& line : lines) EXPECT_TRUE(fitLine(cameras, {}, line));
-    return mergeLines(cameras, {}, params_, lines);
+    return mergeLines(cameras, {}, params_, drift_px_, lines);
   }
   int merge(std::vector<PointRecord>& points) const {
     const KeyframeCameras cameras(material_);
@@ -31,6 +32,7 @@ class MergingTest : public testing::Test {
 
   MapMaterial material_ = materialAlongX(8);
   MergeParams params_;
+  double drift_px_ = 0;
   const Segment3 upright_{{1.8, -0.7, 4}, {1.9, 0.6, 4.1}};
 };
 
@@ -87,6 +89,54 @@ TEST_F(MergingTest, APointFoundAgainIsOnePoint) {
   ASSERT_EQ(points.size(), 1u);
   EXPECT_EQ(points[0].id, 7u);
   EXPECT_EQ(points[0].views.size(), 7u);
+}
+
+/// Where the second pass sees a line that the trajectory has put beside the first one.
+Segment3 besides(const Segment3& segment, double by_m) {
+  const Eigen::Vector3d by(by_m, 0, 0);
+  return {segment.start + by, segment.end + by};
+}
+
+TEST_F(MergingTest, APassThatDriftedIsJoinedWhereTheTrajectoryMayStillMove) {
+  const auto passes = [&] {
+    return std::vector<LineRecord>{lineOf(material_, 1, upright_, 0, 3),
+                                   lineOf(material_, 2, besides(upright_, 0.04), 4, 7)};
+  };
+  std::vector<LineRecord> lines = passes();
+  EXPECT_EQ(merge(lines), 0) << "four centimetres are 4.6 pixels";
+  drift_px_ = 4;
+  lines = passes();
+  EXPECT_EQ(merge(lines), 1);
+}
+
+TEST_F(MergingTest, ADriftedPassBesideTwoLinesIsLeftAlone) {
+  drift_px_ = 4;
+  std::vector<LineRecord> lines{lineOf(material_, 1, upright_, 0, 3), lineOf(material_, 2, besides(upright_, 0.07), 0, 3),
+                                lineOf(material_, 3, besides(upright_, 0.03), 4, 7)};
+  EXPECT_EQ(merge(lines), 0) << "either could be meant";
+}
+
+TEST_F(MergingTest, ADriftedPassWithTheBrighterSideOnTheOtherSideIsAnotherEdge) {
+  drift_px_ = 4;
+  const Segment3 other = besides(upright_, 0.04);
+  std::vector<LineRecord> lines{lineOf(material_, 1, upright_, 0, 3),
+                                lineOf(material_, 2, Segment3{other.end, other.start}, 4, 7)};
+  EXPECT_EQ(merge(lines), 0);
+}
+
+TEST_F(MergingTest, ATrackThatTheLineDoesNotExplainIsTakenOutAgain) {
+  std::vector<LineRecord> lines{lineOf(material_, 7, upright_, 0, 4)};
+  for (FrameId k = 5; k < 8; ++k) lines[0].views.push_back(viewOf(material_, k, 9, besides(upright_, 0.5)));
+  lines[0].known = true;
+  for (LineView& v : lines[0].views) v.inlier = v.track == 7 || v.keyframe == 5;
+  ASSERT_EQ(splitLines(lines), 1);
+  ASSERT_EQ(lines.size(), 2u);
+  EXPECT_EQ(lines[0].id, 7u);
+  EXPECT_EQ(lines[0].views.size(), 5u);
+  EXPECT_EQ(lines[1].id, 8u);
+  EXPECT_EQ(lines[1].views.size(), 3u);
+  EXPECT_EQ(lines[1].views[0].track, 9u);
+  EXPECT_EQ(splitLines(lines), 0) << "what is not known yet stays";
 }
 
 TEST_F(MergingTest, PointsInOneImageAreTwo) {

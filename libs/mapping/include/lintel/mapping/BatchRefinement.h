@@ -18,6 +18,7 @@ struct RefinementParams {
   int max_iterations = 12;     ///< of a round
   bool lines = true;           ///< lines have residuals too; off: they follow the poses
   int min_views = 3;           ///< keyframes that see a landmark of the adjustment
+  int max_views = 60;          ///< of a landmark that have residuals, spread over all it has; 0: all
   double line_max_sigma_direction_rad = 0.10;  ///< vaguer lines have no residuals
   double line_max_relative_sigma = 0.10;       ///< of their distance
   double held_out_share = 0.05;                ///< of the points: left out, to judge the result by
@@ -34,6 +35,7 @@ struct RefinementParams {
     field("max_iterations", max_iterations);
     field("lines", lines);
     field("min_views", min_views);
+    field("max_views", max_views);
     field("line_max_sigma_direction_rad", line_max_sigma_direction_rad);
     field("line_max_relative_sigma", line_max_relative_sigma);
     field("held_out_share", held_out_share);

@@ -13,6 +13,7 @@ struct MergeParams {
   double max_gap_m = 0.10;            ///< along, between two pieces, and
   double max_relative_gap = 0.10;     ///< of the shorter one's length
   double max_error_px = 1.2;          ///< mean error of all views when joined
+  double max_drift_px = 4.0;          ///< more than that between two passes, as long as the trajectory may still move
   double min_separation_px = 2.5;     ///< lines seen side by side in one image, farther apart, are two lines
   double point_max_error_px = 1.0;    ///< mean error of all views of a joined point
 
@@ -26,6 +27,7 @@ struct MergeParams {
     field("max_gap_m", max_gap_m);
     field("max_relative_gap", max_relative_gap);
     field("max_error_px", max_error_px);
+    field("max_drift_px", max_drift_px);
     field("min_separation_px", min_separation_px);
     field("point_max_error_px", point_max_error_px);
   }

@@ -1,0 +1,12 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "LineFitting.h"
+
+namespace lintel {
+
+/// Takes back merges that turned out wrong: a track of a merged line most of whose views the line does not explain
+/// becomes a line of its own again, not known yet, with an id beyond all others. Returns how many.
+int splitLines(std::vector<LineRecord>& lines);
+
+}  // namespace lintel
