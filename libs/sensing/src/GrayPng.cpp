@@ -5,6 +5,7 @@
 
 #include <cstring>
 #include <memory>
+#include <string_view>
 
 #include "PngFilters.h"
 
@@ -30,29 +31,45 @@ bool readHeader(const std::uint8_t* data, std::size_t size, GrayImage& image) {
   return true;
 }
 
-/// Header and compressed rows of a file whose check sums are right.
-bool readChunks(const std::vector<std::uint8_t>& file, GrayImage& image, std::vector<std::uint8_t>& compressed) {
-  if (file.size() < 8 || std::memcmp(file.data(), kSignature, 8) != 0) return false;
-  compressed.reserve(file.size());
+bool isPng(const std::vector<std::uint8_t>& file) {
+  return file.size() >= 8 && std::memcmp(file.data(), kSignature, 8) == 0;
+}
+
+/// Calls `visit(type, data, size)` for each chunk; false where a check sum is wrong or the last chunk is missing.
+template <class Visit>
+bool forEachChunk(const std::vector<std::uint8_t>& file, const Visit& visit) {
   for (std::size_t at = 8; at + 12 <= file.size();) {
     const std::uint8_t* chunk = &file[at];
     const std::size_t size = number(chunk);
     if (size > file.size() - at - 12 || libdeflate_crc32(0, chunk + 4, size + 4) != number(chunk + 8 + size)) return false;
-    const auto is = [&](const char* type) { return std::memcmp(chunk + 4, type, 4) == 0; };
-    if (is("IHDR") && !readHeader(chunk + 8, size, image)) return false;
-    if (is("IDAT")) compressed.insert(compressed.end(), chunk + 8, chunk + 8 + size);
-    if (is("IEND")) return image.width > 0;
+    const std::string_view type(reinterpret_cast<const char*>(chunk) + 4, 4);
+    visit(type, chunk + 8, size);
+    if (type == "IEND") return true;
     at += size + 12;
   }
   return false;
 }
 
+/// Header and compressed rows of an image of the kind that is read here.
+bool readChunks(const std::vector<std::uint8_t>& file, GrayImage& image, std::vector<std::uint8_t>& compressed) {
+  compressed.reserve(file.size());
+  const bool whole = forEachChunk(file, [&](std::string_view type, const std::uint8_t* data, std::size_t size) {
+    if (type == "IHDR" && !readHeader(data, size, image)) image.width = 0;
+    if (type == "IDAT" && image.width > 0) compressed.insert(compressed.end(), data, data + size);
+  });
+  return whole && image.width > 0;
+}
+
 }  // namespace
+
+bool isDamagedPng(const std::vector<std::uint8_t>& file) {
+  return isPng(file) && !forEachChunk(file, [](std::string_view, const std::uint8_t*, std::size_t) {});
+}
 
 std::optional<GrayImage> decodeGrayPng(const std::vector<std::uint8_t>& file) {
   GrayImage image;
   std::vector<std::uint8_t> compressed;
-  if (!readChunks(file, image, compressed)) return std::nullopt;
+  if (!isPng(file) || !readChunks(file, image, compressed)) return std::nullopt;
   const auto width = static_cast<std::size_t>(image.width), height = static_cast<std::size_t>(image.height);
   std::vector<std::uint8_t> rows((width + 1) * height);
   const std::unique_ptr<libdeflate_decompressor, void (*)(libdeflate_decompressor*)> inflater(

@@ -28,6 +28,7 @@ GrayImage readGrayImage(const std::string& path) {
   if (!std::filesystem::exists(path, ignored)) throw ImageFault(path + ": image file missing");
   const std::vector<std::uint8_t> bytes = bytesOf(path);
   if (auto image = decodeGrayPng(bytes)) return std::move(*image);
+  if (isDamagedPng(bytes)) throw ImageFault(path + ": not a complete image");
   cv::Mat decoded;
   try {
     if (!bytes.empty()) decoded = cv::imdecode(bytes, cv::IMREAD_GRAYSCALE);

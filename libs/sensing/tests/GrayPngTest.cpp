@@ -51,6 +51,8 @@ TEST(GrayPng, LeavesOtherKindsToOthers) {
   cv::imencode(".jpg", gray, jpeg);
   EXPECT_FALSE(decodeGrayPng(jpeg));
   EXPECT_FALSE(decodeGrayPng({}));
+  EXPECT_FALSE(isDamagedPng(encoded(colour)));
+  EXPECT_FALSE(isDamagedPng(jpeg));
 }
 
 TEST(GrayPng, ADamagedFileIsNoImage) {
@@ -61,6 +63,7 @@ TEST(GrayPng, ADamagedFileIsNoImage) {
     std::vector<std::uint8_t> damaged = whole;
     damaged[at] ^= 0x41;
     EXPECT_FALSE(decodeGrayPng(damaged)) << at;
+    EXPECT_TRUE(isDamagedPng(damaged)) << at;
   }
 }
 
