@@ -53,7 +53,7 @@ TEST_F(Pipeline, FiguresOfTheMapAgreeWithAnIndependentInstrument) {
 TEST_F(Pipeline, ABenchGivesWhatSingleRunsGive) {
   std::ofstream(folder_ / "suite.yaml") << "recordings: [recording]\nconfig: " << environment("LINTEL_CONFIG")
                                         << "\nconfigurations: [{name: same}, {name: points, set: "
-                                           "[tracking.lines.enabled=false]}]\n";
+                                           "[features=points]}]\n";
   fs::remove_all(folder_ / "bench");
   ASSERT_EQ(run("lintel-bench", shellWord(folder_ / "suite.yaml") + " -o " + shellWord(folder_ / "bench") +
                                     " --recordings " + shellWord(folder_)),

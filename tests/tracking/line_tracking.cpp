@@ -75,7 +75,7 @@ void setKey(const std::string& argument, FrontEndParams& params, RecordingParams
   else if (key == "detector")
     params.lines.detector = value;
   else if (key == "lines")
-    params.lines.enabled = value == "1";
+    params.features = value == "1" ? "points_lines" : "points";
   else if (key == "to_s")
     recording.to_s = std::stod(value);
   else if (key == "switches")

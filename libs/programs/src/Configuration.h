@@ -21,6 +21,7 @@ struct Configuration {
 
   template <class F>
   void fields(F&& field) {
+    field("features", tracking.features);
     field("tracking", tracking);
     field("estimator", estimator);
     field("map", map);

@@ -102,7 +102,7 @@ TEST_F(ConfigurationTest, AnEmptyFileIsTheDefaults) {
 TEST_F(ConfigurationTest, AnUnknownKeyNamesFileLineAndTheKnownOnes) {
   EXPECT_THAT(complaintOf("map:\n  coverage: 0.5\n  coverag: 1\n"),
               AllOf(StartsWith(file_ + ":3: unknown key map.coverag; known here: "), HasSubstr(" min_observations")));
-  EXPECT_THAT(complaintOf("maps: {}\n"), AllOf(StartsWith(file_ + ":1: unknown key maps"), HasSubstr("estimator map")));
+  EXPECT_THAT(complaintOf("maps: {}\n"), AllOf(StartsWith(file_ + ":1: unknown key maps"), HasSubstr("estimator features map")));
 }
 
 TEST_F(ConfigurationTest, AValueOfTheWrongTypeNamesFileLineAndWhatItMustBe) {
@@ -125,10 +125,10 @@ TEST_F(ConfigurationTest, WhatIsNoYamlNamesFileAndLine) {
 TEST_F(ConfigurationTest, OptionsAreSetByTheirDottedKeys) {
   Configuration c;
   setOption("estimator.landmarks.line_max_error_px=2.5", c);
-  setOption("tracking.lines.enabled=false", c);
+  setOption("features=points", c);
   setOption("tracking.lines.mode=descriptor", c);
   EXPECT_EQ(c.estimator.landmarks.line_max_error_px, 2.5);
-  EXPECT_FALSE(c.tracking.lines.enabled);
+  EXPECT_EQ(c.tracking.features, "points");
   EXPECT_EQ(Leaves(c).all().at("tracking.lines.mode"), "descriptor");
 }
 

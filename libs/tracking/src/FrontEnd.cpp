@@ -21,7 +21,7 @@ struct FrontEnd::Impl {
         pyramid(params.pyramid, std::max(params.points.window_px, params.lines.window_px)),
         gyro(rig, params.points.initial_gyro_bias_sigma),
         points(rig, params.points),
-        lines(params.lines.enabled ? makeLineTracker(rig, params.lines) : nullptr) {}
+        lines(params.features != "points" ? makeLineTracker(rig, params.lines) : nullptr) {}
 
   void track(const Frame& frame, const ImuBatch& imu_since_last) {
     StageTimer total(statistics, "total");

@@ -51,6 +51,8 @@ void checkParams(const Rig& rig, const FrontEndParams& params) {
   require("camera fy", rig.camera.fy, 1, 1e6);
   require("pyramid.levels", params.pyramid.levels, 1, 8);
   require("pyramid.clip_limit", params.pyramid.clip_limit, 0.1, 1000);
+  if (params.features != "points" && params.features != "points_lines")
+    throw std::invalid_argument("features = " + params.features + ", must be points or points_lines");
   const PointTrackerParams& p = params.points;
   require("points.max_points", p.max_points, 1, 10000);
   require("points.min_distance_px", p.min_distance_px, 1, 1000);

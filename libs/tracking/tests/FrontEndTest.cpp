@@ -35,7 +35,7 @@ std::vector<FrameTracks> trackTurning(const std::vector<testing::Scene>& scenes,
 
 FrontEndParams pointsOnly() {
   FrontEndParams params;
-  params.lines.enabled = false;
+  params.features = "points";
   params.points.max_points = 60;
   return params;
 }

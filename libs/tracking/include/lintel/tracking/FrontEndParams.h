@@ -53,7 +53,6 @@ struct PointTrackerParams {
 
 /// Lines: detected segments, carried from frame to frame [Lim2021, line tracking].
 struct LineTrackerParams {
-  bool enabled = true;  ///< false: points alone
   std::string mode =
       "flow";  ///< flow: predicted by optical flow, merged with detections; descriptor: LBD matches alone (baseline)
   std::string detector = "edge_drawing";  ///< edge_drawing or lsd (slower); both at half resolution
@@ -79,7 +78,6 @@ struct LineTrackerParams {
 
   template <class F>
   void fields(F&& field) {
-    field("enabled", enabled);
     field("mode", mode);
     field("detector", detector);
     field("gradient_threshold", gradient_threshold);
@@ -106,6 +104,7 @@ struct LineTrackerParams {
 
 /// What the front end is made of. Every value is checked by the FrontEnd's constructor.
 struct FrontEndParams {
+  std::string features = "points_lines";  ///< or points, alone; of the whole program: not among the keys of tracking
   PyramidParams pyramid;
   PointTrackerParams points;
   LineTrackerParams lines;
