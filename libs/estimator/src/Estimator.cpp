@@ -15,6 +15,7 @@
 #include "PointTriangulation.h"
 #include "WindowMarginalization.h"
 #include "WindowRetirement.h"
+#include "WindowSigma.h"
 #include "WindowSolver.h"
 #include "lintel/geometry/Frames.h"
 #include "lintel/geometry/Rotation.h"
@@ -50,7 +51,9 @@ class Estimator::Impl {
   WindowUpdate process(const FrameTracks& tracks, const ImuBatch& imu);
   WindowUpdate finish();
   CalibrationEstimate calibration() const {
-    return {window_.correctedCamera(), window_.T_b_c(), window_.correction[kTimeOffsetAt]};
+    CalibrationEstimate estimate{window_.correctedCamera(), window_.T_b_c(), window_.correction[kTimeOffsetAt], {}};
+    if (tracking_) estimate.sigma = windowSigma(window_, params_, rig_.T_b_c).calibration;
+    return estimate;
   }
 
  private:
@@ -66,7 +69,7 @@ class Estimator::Impl {
   void fail(const std::string& reason, WindowUpdate& update);
   void moveToAnchor();
   void countLandmarks(WindowUpdate& update) const;
-  void fillPose(WindowUpdate& update) const;
+  void fillPose(WindowUpdate& update);
 
   Rig rig_;
   EstimatorParams params_;
@@ -74,7 +77,7 @@ class Estimator::Impl {
   Initializer initializer_;
   SlidingWindow window_;
   bool tracking_ = false;
-  std::uint64_t frames_seen_ = 0;
+  std::uint64_t frames_seen_ = 0, poses_ = 0;
   FrameId next_frame_id_ = 0;
   ImuBatch pending_imu_;                    // since the newest window frame
   std::int64_t newest_t_ns_ = 0;
@@ -269,6 +272,7 @@ void Estimator::Impl::countLandmarks(WindowUpdate& update) const {
   for (const auto& [id, track] : window_.points) update.points_used += track.triangulated;
   for (const auto& [id, track] : window_.lines) {
     update.lines_tracked += !track.sightings.empty() && track.sightings.back().frame == newest;
+    update.lines_placed += track.triangulated;
     update.lines_used += entersProblem(track, params_.degeneracy);
     update.lines_constrained += entersProblem(track, params_.degeneracy) && track.group != 0;
     update.lines_degenerate += track.triangulated && track.degenerate();
@@ -278,11 +282,13 @@ void Estimator::Impl::countLandmarks(WindowUpdate& update) const {
   }
 }
 
-void Estimator::Impl::fillPose(WindowUpdate& update) const {
+void Estimator::Impl::fillPose(WindowUpdate& update) {
   const WindowFrame& newest = window_.frames.back();
   update.T_w_b = newest.T_w_b();
   update.v_w_b = velocityOf(newest.motion.data());
   update.bias = biasOf(newest.motion.data());
+  constexpr std::uint64_t kSigmaEvery = 10;  // a second: biases and their sigmas change slowly
+  if (poses_++ % kSigmaEvery == 0) update.bias_sigma = windowSigma(window_, params_, rig_.T_b_c).bias;
 }
 
 WindowUpdate Estimator::Impl::finish() {

@@ -68,6 +68,7 @@ Json jsonOf(const SegmentErrors& e) {
 Json jsonOf(const LineErrors& e) {
   return {{"lines", e.lines},
           {"degenerate", e.degenerate},
+          {"constrained", e.constrained},
           {"length_m", e.length_m},
           {"observable_m", e.observable_m},
           {"tolerances_m", e.tolerances_m},
@@ -77,7 +78,8 @@ Json jsonOf(const LineErrors& e) {
           {"duplicates", e.duplicates},
           {"all_matched", jsonOf(e.all_matched)},
           {"well_determined_matched", jsonOf(e.well_determined_matched)},
-          {"degenerate_matched", jsonOf(e.degenerate_matched)}};
+          {"degenerate_matched", jsonOf(e.degenerate_matched)},
+          {"constrained_matched", jsonOf(e.constrained_matched)}};
 }
 
 }  // namespace

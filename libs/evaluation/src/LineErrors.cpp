@@ -13,7 +13,7 @@ namespace {
 
 struct AlignedLine {
   Segment3 segment;
-  bool degenerate;
+  bool degenerate, constrained;
 };
 
 std::vector<AlignedLine> alignedLines(const std::vector<MapLine>& lines, const Similarity& S_truth_map) {
@@ -21,7 +21,7 @@ std::vector<AlignedLine> alignedLines(const std::vector<MapLine>& lines, const S
   for (const MapLine& line : lines) {
     const Segment3 segment{S_truth_map * line.segment_w.start, S_truth_map * line.segment_w.end};
     if (segment.length() > 1e-6 && segment.start.allFinite() && segment.end.allFinite())
-      result.push_back({segment, line.degenerate});
+      result.push_back({segment, line.degenerate, line.constrained});
   }
   return result;
 }
@@ -105,7 +105,7 @@ class CoverCount {
 void addPrecision(LineErrors& result, const std::vector<AlignedLine>& lines, const std::vector<TrueLine>& truth,
                   const LineErrorParams& params) {
   Shares precision(params.tolerances_m);
-  ErrorCollector all, degenerate, well_determined;
+  ErrorCollector all, degenerate, well_determined, constrained;
   CoverCount cover;
   for (const AlignedLine& line : lines) {
     const LineMatch match = matchLine(line.segment, truth, params);
@@ -115,12 +115,14 @@ void addPrecision(LineErrors& result, const std::vector<AlignedLine>& lines, con
     const Segment3& edge = truth[*match.edge].segment_w;
     all.add(line.segment, edge);
     (line.degenerate ? degenerate : well_determined).add(line.segment, edge);
+    if (line.constrained) constrained.add(line.segment, edge);
     cover.add(*match.edge, line.segment, edge);
   }
   result.precision = precision.result();
   result.all_matched = all.result();
   result.degenerate_matched = degenerate.result();
   result.well_determined_matched = well_determined.result();
+  result.constrained_matched = constrained.result();
   result.duplicates = cover.duplicates();
 }
 
@@ -168,6 +170,7 @@ LineErrors evaluateLines(const std::vector<MapLine>& lines, const Similarity& S_
   result.lines = aligned.size();
   for (const AlignedLine& line : aligned) {
     result.degenerate += line.degenerate ? 1 : 0;
+    result.constrained += line.constrained ? 1 : 0;
     result.length_m += line.segment.length();
   }
   addPrecision(result, aligned, truth, params);

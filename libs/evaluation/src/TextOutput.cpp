@@ -71,7 +71,8 @@ void printText(const TrajectoryErrors& e, std::ostream& out) {
 }
 
 void printText(const LineErrors& e, std::ostream& out) {
-  out << "lines           " << e.lines << " of " << fixed(e.length_m, 1) << " m, " << e.degenerate << " degenerate\n";
+  out << "lines           " << e.lines << " of " << fixed(e.length_m, 1) << " m, " << e.degenerate << " degenerate, "
+      << e.constrained << " constrained\n";
   if (!e.surface_precision.empty()) {
     printShares("on surfaces", e.tolerances_m, e.surface_precision, out);
     out << "  of the map on true surfaces\n";
@@ -84,6 +85,7 @@ void printText(const LineErrors& e, std::ostream& out) {
   printSegmentErrors("all", e.all_matched, out);
   printSegmentErrors("well determined", e.well_determined_matched, out);
   printSegmentErrors("degenerate", e.degenerate_matched, out);
+  printSegmentErrors("constrained", e.constrained_matched, out);
 }
 
 }  // namespace lintel

@@ -6,11 +6,12 @@
 #include <functional>
 #include <limits>
 
+#include "BenchDetails.h"
+
 namespace lintel {
 
 namespace {
 
-constexpr double kDegrees = 180.0 / 3.14159265358979323846;
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 using CellText = std::function<std::string(const BenchCell&)>;
@@ -102,68 +103,6 @@ Table accuracyTable(const BenchSuite& suite, const BenchResults& results, bool r
   return table;
 }
 
-/// A row a recording and configuration, a column a figure.
-Table detailTable(const BenchSuite& suite, const BenchResults& results, Table table,
-                  const std::vector<std::pair<std::string, CellText>>& figures) {
-  table.columns = {"recording", "configuration"};
-  for (const auto& figure : figures) table.columns.push_back(figure.first);
-  for (std::size_t r = 0; r < suite.recordings.size(); ++r)
-    for (std::size_t c = 0; c < suite.configurations.size(); ++c) {
-      const BenchCell& cell = results.cell(r, c);
-      if (!cell.anyOk()) continue;
-      std::vector<Cell> row{suite.recordings[r].name, suite.configurations[c].name};
-      for (const auto& figure : figures) row.emplace_back(figure.second(cell));
-      if (row.back().text == "-" && row[3].text == "-") continue;  // nothing to compare with
-      table.rows.push_back(row);
-    }
-  return table;
-}
-
-CellText evaluationFigure(const std::string& path, int decimals, double factor = 1) {
-  return [=](const BenchCell& c) { return fixedText(factor * c.evaluation(path), decimals); };
-}
-
-CellText statsFigure(const std::string& path, int decimals, double factor = 1) {
-  return [=](const BenchCell& c) { return fixedText(factor * c.stats(path), decimals); };
-}
-
-Table coverageTable(const BenchSuite& suite, const BenchResults& results) {
-  return detailTable(suite, results,
-                     {"coverage",
-                      "How much of each recording has a pose, and the error over all of it",
-                      {},
-                      {},
-                      {"RMSE over all: where there is no estimate, the one nearest in time stands in, so that a run that "
-                       "stops early cannot look better for it."}},
-                     {{"first pose [s]", evaluationFigure("/trajectory/start_offset_s", 2)},
-                      {"time covered [%]", evaluationFigure("/trajectory/coverage_time", 1, 100)},
-                      {"path covered [%]", evaluationFigure("/trajectory/coverage_path", 1, 100)},
-                      {"resets", statsFigure("/resets", 0)},
-                      {"RMSE [m]", evaluationFigure("/trajectory/position_m/rmse", 4)},
-                      {"RMSE over all [m]", evaluationFigure("/trajectory/whole_rmse_m", 4)},
-                      {"scale", evaluationFigure("/trajectory/scale", 4)},
-                      {"rotation RMSE [deg]", evaluationFigure("/trajectory/rotation_rad/rmse", 3, kDegrees)}});
-}
-
-/// The paper's tracking table and what the estimator made of the tracks.
-Table trackingTable(const BenchSuite& suite, const BenchResults& results) {
-  return detailTable(suite, results,
-                     {"tracking",
-                      "Tracking",
-                      {},
-                      {},
-                      {"Lines in 5 windows: share of line tracks seen in at least 10 frames, of which every second enters "
-                       "the window (the paper's table II)."}},
-                     {{"lines in 5 windows [%]", statsFigure("/tracking/lines/share_seen_in_10_frames", 1, 100)},
-                      {"median life of a line [frames]", statsFigure("/tracking/lines/median_length", 0)},
-                      {"median life of a point [frames]", statsFigure("/tracking/points/median_length", 0)},
-                      {"points used", statsFigure("/mean_points_used", 1)},
-                      {"lines tracked", statsFigure("/mean_lines_tracked", 1)},
-                      {"well determined", statsFigure("/mean_lines_used", 1)},
-                      {"degenerate", statsFigure("/mean_lines_degenerate", 1)},
-                      {"of them constrained", statsFigure("/mean_lines_constrained", 1)}});
-}
-
 Table relativeTable(const BenchSuite& suite, const BenchResults& results) {
   Table table{"relative",
               "Relative translation error, median [% of the stretch]",
@@ -190,41 +129,6 @@ Table relativeTable(const BenchSuite& suite, const BenchResults& results) {
   return table;
 }
 
-Table mapTable(const BenchSuite& suite, const BenchResults& results) {
-  const auto degrees = [](const std::string& path) { return evaluationFigure(path, 2, kDegrees); };
-  Table table = detailTable(suite, results,
-                     {"map", "Line map against the truth (simulated recordings)", {}, {},
-                      {"Shares of length. Directions of segments matched to a true edge, median; degenerate ones apart."}},
-                     {{"lines", statsFigure("/map_lines", 0)},
-                      {"length [m]", evaluationFigure("/lines/length_m", 1)},
-                      {"on surfaces, 2 cm", evaluationFigure("/lines/surface_precision/0", 3)},
-                      {"on surfaces, 5 cm", evaluationFigure("/lines/surface_precision/1", 3)},
-                      {"on edges, 5 cm", evaluationFigure("/lines/precision/1", 3)},
-                      {"edges found, 5 cm", evaluationFigure("/lines/recall/1", 3)},
-                      {"direction [deg]", degrees("/lines/all_matched/direction_median_rad")},
-                      {"degenerate", evaluationFigure("/lines/degenerate", 0)},
-                      {"their direction [deg]", degrees("/lines/degenerate_matched/direction_median_rad")},
-                      {"duplicates", evaluationFigure("/lines/duplicates", 2)}});
-  return table;
-}
-
-Table timingTable(const BenchSuite& suite, const BenchResults& results) {
-  std::vector<std::pair<std::string, CellText>> figures;
-  for (const char* stage : {"decoding", "tracking", "estimation"}) {
-    const std::string path = std::string("/stages/") + stage;
-    figures.emplace_back(std::string(stage) + " mean [ms]", statsFigure(path + "/mean_ms", 1));
-    figures.emplace_back("p95", statsFigure(path + "/p95_ms", 1));
-  }
-  figures.emplace_back("CPU a frame [ms]", statsFigure("/cpu_ms_per_frame", 1));
-  figures.emplace_back("frames/s", statsFigure("/frames_per_s", 0));
-  figures.emplace_back("memory [MB]", statsFigure("/peak_memory_mb", 0));
-  return detailTable(suite, results,
-                     {"timing", "CPU time of each stage", {}, {},
-                      {"Differs from run to run and from machine to machine, unlike all other tables. CPU a frame: tracking "
-                       "and estimation. frames/s: wall time, with as many jobs beside it as were asked for."}},
-                     figures);
-}
-
 Table faultTable(const BenchResults& results) {
   Table table{"faults", "Runs without a result", {"run", "why"}, {}, {}};
   for (const auto& [job, run] : results.runs())
@@ -245,7 +149,7 @@ nlohmann::ordered_json figuresOf(const BenchRun& run) {
   json["evaluation"] = run.evaluation;
   if (!run.evaluation_refined.is_null()) json["evaluation_refined"] = run.evaluation_refined;
   for (const char* key : {"frames", "frames_with_pose", "keyframes", "first_pose_s", "resets", "reset_reasons",
-                          "mean_points_used", "mean_lines_tracked", "mean_lines_used", "mean_lines_degenerate", "mean_lines_constrained",
+                          "mean_points_used", "mean_lines_tracked", "mean_lines_placed", "mean_lines_used", "mean_lines_degenerate", "mean_lines_degenerate_by_reason", "degenerate_share", "mean_lines_constrained",
                           "map_points", "map_lines", "tracking", "warnings"})
     if (run.stats.contains(key)) json["stats"][key] = run.stats[key];
   return json;
@@ -253,10 +157,13 @@ nlohmann::ordered_json figuresOf(const BenchRun& run) {
 
 }  // namespace
 
+bool differsFromRunToRun(const Table& table) { return table.name == "timing" || table.name == "method"; }
+
 std::vector<Table> benchTables(const BenchSuite& suite, const BenchResults& results) {
   std::vector<Table> tables{accuracyTable(suite, results, false)};
   if (anyFigure(suite, results, [](const auto& c) { return c.refined("/trajectory/position_m/rmse"); }))
     tables.push_back(accuracyTable(suite, results, true));
+  tables.push_back(methodTable(suite, results));
   tables.push_back(coverageTable(suite, results));
   tables.push_back(trackingTable(suite, results));
   tables.push_back(relativeTable(suite, results));
@@ -270,7 +177,7 @@ std::vector<Table> benchTables(const BenchSuite& suite, const BenchResults& resu
 nlohmann::ordered_json benchJson(const BenchSuite& suite, const BenchResults& results) {
   nlohmann::ordered_json json{{"suite", suite.name}, {"title", suite.title}, {"lintel", LINTEL_VERSION}};
   for (const Table& table : benchTables(suite, results)) {
-    if (table.name == "timing") continue;
+    if (differsFromRunToRun(table)) continue;
     nlohmann::ordered_json rows = nlohmann::ordered_json::array();
     for (const auto& row : table.rows) {
       nlohmann::ordered_json texts = nlohmann::ordered_json::array();

@@ -9,8 +9,11 @@
 
 namespace lintel {
 
-/// The tables of a suite. All but "timing" are the same whenever and wherever the jobs ran.
+/// The tables of a suite. All but those with CPU times are the same whenever and wherever the jobs ran.
 std::vector<Table> benchTables(const BenchSuite& suite, const BenchResults& results);
+
+/// Whether a table holds CPU times.
+bool differsFromRunToRun(const Table& table);
 
 /// Figures for programs: per recording and configuration, and every single run. Nothing that depends on the machine.
 nlohmann::ordered_json benchJson(const BenchSuite& suite, const BenchResults& results);

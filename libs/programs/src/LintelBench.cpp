@@ -179,7 +179,7 @@ class LintelBench {
     for (const Table& table : benchTables(suite_, results)) {
       AtomicFile::writeWhole((out_folder_ / "tables" / (table.name + ".txt")).string(), textOf(table));
       AtomicFile::writeWhole((out_folder_ / "tables" / (table.name + ".csv")).string(), csvOf(table));
-      const bool shown = table.name.rfind("accuracy", 0) == 0 || table.name == "faults";
+      const bool shown = table.name.rfind("accuracy", 0) == 0 || table.name == "method" || table.name == "faults";
       if (!quiet_ && shown && !table.rows.empty()) out_ << textOf(table) << "\n";
     }
     AtomicFile::writeWhole((out_folder_ / "results.json").string(), benchJson(suite_, results).dump(2) + "\n");

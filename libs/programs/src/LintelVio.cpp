@@ -40,7 +40,7 @@ std::string examples() {
          "  lintel-vio MH_01_easy -o out                       an EuRoC folder (the one that holds mav0)\n"
          "  lintel-vio flight.rawlog -o out --export glb,ply   a rawlog\n"
          "  lintel-vio flight.rawlog -o out --from 10 --to 40  thirty seconds of it\n"
-         "  lintel-vio flight.rawlog -o out --set tracking.lines.enabled=false   points alone\n"
+         "  lintel-vio flight.rawlog -o out --set features=points   points alone\n"
          "  lintel-vio --dump-config > my.yaml                 every option with its default";
 }
 
@@ -59,13 +59,14 @@ class LintelVio {
     checkCommandLine();
     auto recording = openRecording(input_, recording_params_);
     prepareOutput();
+    costs_.once_ms.emplace_back("start of the program", processTimeMs());
     const auto start = std::chrono::steady_clock::now();
     const OdometryResult result = process(*recording, configuration);
-    const double wall_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+    const double wall_s = costs_.wall_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
     if (result.statistics.frames == 0 && !result.error.empty()) throw RecordingError(result.error);
     const std::vector<std::string> warnings = recording->warnings();
     for (const std::string& warning : warnings) err_ << kName << ": warning: " << warning << "\n";
-    writeOutput(result, configuration, wall_s, warnings);
+    writeOutput(result, configuration, warnings);
     if (!quiet_) summarise(result, wall_s);
     if (!result.error.empty()) throw RecordingError(result.error + " (what was computed until then is in " + output_ + ")");
     if (result.trajectory.empty()) throw std::runtime_error(noPose(result));
@@ -153,11 +154,27 @@ class LintelVio {
                        });
   }
 
-  void writeOutput(const OdometryResult& result, const Configuration& configuration, double wall_s,
+  void writeOutput(const OdometryResult& result, const Configuration& configuration,
                    const std::vector<std::string>& warnings) {
     const fs::path out(output_);
     LineMap map = result.map;
     map.configuration = writeConfiguration(configuration);
+    writeTrajectoryAndMap(result, map);
+    {
+      const RunCosts::Once booking(costs_, "exports");
+      for (const std::string& extension : exports_)
+        exported_.push_back(exportMap(map, (out / ("map." + extension)).string()).files.front());
+    }
+    {
+      const RunCosts::Once booking(costs_, "report");
+      AtomicFile::writeWhole((out / "report.html").string(), report(result, map.configuration, warnings));
+    }
+    AtomicFile::writeWhole((out / "stats.json").string(), statisticsJson(result, calibration_, costs_, warnings));
+  }
+
+  void writeTrajectoryAndMap(const OdometryResult& result, const LineMap& map) {
+    const RunCosts::Once booking(costs_, "writing");
+    const fs::path out(output_);
     AtomicFile::writeWhole((out / "trajectory.tum").string(), trajectoryText(result.trajectory));
     std::error_code none;  // what an earlier run left must not pass for this run's
     fs::remove(out / "trajectory_refined.tum", none);
@@ -165,15 +182,11 @@ class LintelVio {
       AtomicFile::writeWhole((out / "trajectory_refined.tum").string(), trajectoryText(result.refined_trajectory));
     AtomicFile::writeWhole((out / "config.yaml").string(), map.configuration);
     writeMap(map, (out / "map.lintel").string());
-    for (const std::string& extension : exports_)
-      exported_.push_back(exportMap(map, (out / ("map." + extension)).string()).files.front());
-    AtomicFile::writeWhole((out / "stats.json").string(), statisticsJson(result, wall_s, warnings));
-    AtomicFile::writeWhole((out / "report.html").string(), report(result, map.configuration, wall_s, warnings));
   }
 
-  std::string report(const OdometryResult& result, const std::string& configuration, double wall_s,
+  std::string report(const OdometryResult& result, const std::string& configuration,
                      const std::vector<std::string>& warnings) const {
-    RunRecord record{input_, configuration, writeConfiguration({}), calibration_, wall_s, warnings, {}, "", ""};
+    RunRecord record{input_, configuration, writeConfiguration({}), calibration_, costs_, warnings, {}, "", ""};
     try {
       record.groundtruth = readGroundTruth(input_);
     } catch (const std::exception& error) {  // the run is good without it
@@ -226,6 +239,7 @@ class LintelVio {
   std::vector<std::string> settings_, exports_{"glb", "obj", "ply", "3Dscene", "png"}, exported_;
   RecordingParams recording_params_;
   RunSeries series_;
+  RunCosts costs_;
   Rig calibration_;
   int threads_ = 2;
   bool no_refine_ = false, overwrite_ = false, quiet_ = false, dump_config_ = false;

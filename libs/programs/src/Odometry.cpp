@@ -36,13 +36,16 @@ class BackEnd {
     if (s.frames++ == 0) s.first_frame_ns = update.t_ns;
     s.last_frame_ns = update.t_ns;
     count(update);
-    map_.add(update);
+    {
+      const StageClock::Scope scope(s.mapping);
+      map_.add(update);
+    }
     if (update.hasPose()) result_.trajectory.push_back({update.t_ns, update.T_w_b});
     if (observer_) observer_(frame.step.frame, frame.tracks, update, s.frames);
   }
 
   void finish(const RefinementProgress& refining) {
-    const CalibrationEstimate calibration = estimator_.calibration();
+    const CalibrationEstimate calibration = result_.window_calibration = estimator_.calibration();
     result_.rig = rig_;
     result_.rig.camera = calibration.camera;
     result_.rig.T_b_c = calibration.T_b_c;
@@ -54,8 +57,9 @@ class BackEnd {
     s.keyframes = result_.map.keyframes.size();
     if (s.window_frames == 0) return;
     const auto n = static_cast<double>(s.window_frames);
-    for (double* mean : {&s.mean_points_used, &s.mean_lines_tracked, &s.mean_lines_used, &s.mean_lines_degenerate,
-                         &s.mean_lines_constrained})
+    for (double* mean : {&s.mean_points_used, &s.mean_lines_tracked, &s.mean_lines_placed, &s.mean_lines_used, &s.mean_lines_degenerate,
+                         &s.mean_lines_constrained, &s.mean_lines_through_epipole, &s.mean_lines_direction_unknown,
+                         &s.mean_lines_distance_unknown})
       *mean /= n;
   }
 
@@ -67,6 +71,7 @@ class BackEnd {
       const BatchRefinement refinement(rig_, configuration_.estimator, configuration_.map, configuration_.refinement);
       result_.refinement = refinement.refine(material, refining);
     } else {
+      const StageClock::Scope scope(result_.statistics.map_fitting);
       prepareMaterial(configuration_.map, material);
     }
     if (result_.refinement.accepted) {
@@ -96,9 +101,13 @@ class BackEnd {
     ++s.window_frames;
     s.mean_points_used += update.points_used;
     s.mean_lines_tracked += update.lines_tracked;
+    s.mean_lines_placed += update.lines_placed;
     s.mean_lines_used += update.lines_used;
     s.mean_lines_degenerate += update.lines_degenerate;
     s.mean_lines_constrained += update.lines_constrained;
+    s.mean_lines_through_epipole += update.lines_through_epipole;
+    s.mean_lines_direction_unknown += update.lines_direction_unknown;
+    s.mean_lines_distance_unknown += update.lines_distance_unknown;
   }
 
   Rig rig_;
@@ -118,10 +127,10 @@ class FirstHalf {
   std::optional<TrackedFrame> next() {
     TrackedFrame frame;
     try {
-      const StageClock::Scope scope(result_.statistics.decoding);
       auto step = recording_.next();
       if (!step) return std::nullopt;
       frame.step = std::move(*step);
+      result_.statistics.decoding.add(frame.step.reading_ms);
     } catch (const RecordingError& e) {
       result_.error = e.what();
       return std::nullopt;

@@ -79,8 +79,8 @@ class Adviser {
   }
 
   void lines() {
-    if (s_.mean_lines_used + s_.mean_lines_degenerate <= 0) return;
-    const double share = s_.mean_lines_degenerate / (s_.mean_lines_used + s_.mean_lines_degenerate);
+    if (s_.mean_lines_placed <= 0) return;
+    const double share = s_.mean_lines_degenerate / s_.mean_lines_placed;
     if (share > kDegenerateShare)
       say(fixedText(100 * share, 0) +
           " % of the lines in the window were degenerate: the camera moves along them, so their own views leave direction or depth "

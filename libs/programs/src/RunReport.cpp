@@ -12,7 +12,7 @@
 #include "Plots.h"
 #include "Progress.h"
 #include "RunAdvice.h"
-#include "lintel/geometry/Rotation.h"
+#include "RunTables.h"
 #include "lintel/reporting/HtmlPage.h"
 
 namespace lintel {
@@ -123,8 +123,8 @@ class Report {
     const std::string& verdict = result_.refinement.verdict;
     table.rows.push_back({"refinement", verdict.empty() ? "left out" : verdict});
     table.rows.push_back({"starts anew", std::to_string(s.resets)});
-    table.rows.push_back({"speed", fixedText(static_cast<double>(s.frames) / std::max(record_.wall_s, 1e-3), 0) +
-                                       " frames/s, " + durationText(record_.wall_s)});
+    table.rows.push_back({"speed", fixedText(static_cast<double>(s.frames) / std::max(record_.costs.wall_s, 1e-3), 0) +
+                                       " frames/s, " + durationText(record_.costs.wall_s)});
     page_.table(table);
     const auto advice = adviceFor(result_, record_.calibration, series_, record_.recording_warnings);
     page_.warnings(advice);
@@ -213,15 +213,21 @@ class Report {
                     over("lines", false, [](const RunFrame& f) { return double(f.lines_tracked); })};
     window.curves = {over("points", true, [](const RunFrame& f) { return double(f.points_used); }),
                      over("well determined lines", true, [](const RunFrame& f) { return double(f.lines_used); }),
-                     over("degenerate lines", true, [](const RunFrame& f) { return double(f.lines_degenerate); }),
-                     over("of them constrained", true, [](const RunFrame& f) { return double(f.lines_constrained); })};
+                     over("degenerate lines", true, [](const RunFrame& f) { return double(f.lines_degenerate); })};
+    Figure degenerate{"", "time [s]", "degenerate lines"};
+    degenerate.curves = {over("all", true, [](const RunFrame& f) { return double(f.lines_degenerate); }),
+                         over("direction unknown", true, [](const RunFrame& f) { return double(f.lines_direction_unknown); }),
+                         over("distance unknown", true, [](const RunFrame& f) { return double(f.lines_distance_unknown); }),
+                         over("through the epipole", true, [](const RunFrame& f) { return double(f.lines_through_epipole); }),
+                         over("constrained", true, [](const RunFrame& f) { return double(f.lines_constrained); })};
     page_.beginGallery();
-    for (Figure* figure : {&image, &window}) {
+    for (Figure* figure : {&image, &window, &degenerate}) {
       figure->from_zero = true;
       figure->height_px = 300;
     }
     page_.figure(image, "Points and lines tracked in the image");
     page_.figure(window, "Points and lines in the window, and lines whose own views leave direction or depth open");
+    page_.figure(degenerate, "Degenerate lines by their reason, and those held by lines parallel to them");
     page_.endGallery();
     const FrontEndStatistics& f = result_.statistics.front_end;
     page_.table({"tracks", "", {"", "points", "lines"},
@@ -231,41 +237,40 @@ class Report {
                  {}});
   }
 
+  /// A bias over time, with a band of one standard deviation to both sides.
+  template <class Value>
+  std::vector<Curve> biasCurves(const std::string& name, const std::string& colour, const Value& value) const {
+    Curve band{"", {}, CurveStyle::kBand, colour};
+    for (const RunFrame& frame : frames_) {
+      if (!frame.in_window || !frame.bias_sigma) continue;
+      for (const int side : {1, -1})
+        band.points.push_back({secondsAt(frame), value(frame.bias) + side * value(*frame.bias_sigma)});
+    }
+    Curve curve = over(name, true, [&](const RunFrame& f) { return value(f.bias); });
+    curve.colour = colour;
+    return {band, curve};
+  }
+
   void biases() {
     page_.heading("IMU biases");
     Figure gyro{"", "time [s]", "gyroscope [rad/s]"}, accel{"", "time [s]", "accelerometer [m/s^2]"};
     for (int axis = 0; axis < 3; ++axis) {
       const std::string name(1, "xyz"[axis]);
-      gyro.curves.push_back(over(name, true, [axis](const RunFrame& f) { return f.bias.gyro[axis]; }));
-      accel.curves.push_back(over(name, true, [axis](const RunFrame& f) { return f.bias.accel[axis]; }));
+      const auto gyroOf = [axis](const ImuBias& bias) { return bias.gyro[axis]; };
+      const auto accelOf = [axis](const ImuBias& bias) { return bias.accel[axis]; };
+      for (Curve& curve : biasCurves(name, plotColour(static_cast<std::size_t>(axis)), gyroOf)) gyro.curves.push_back(curve);
+      for (Curve& curve : biasCurves(name, plotColour(static_cast<std::size_t>(axis)), accelOf)) accel.curves.push_back(curve);
     }
     gyro.height_px = accel.height_px = 300;
     page_.beginGallery();
-    page_.figure(gyro, "Bias of the gyroscope");
-    page_.figure(accel, "Bias of the accelerometer");
+    page_.figure(gyro, "Bias of the gyroscope; the band is one standard deviation to both sides");
+    page_.figure(accel, "Bias of the accelerometer; the band is one standard deviation to both sides");
     page_.endGallery();
   }
 
   void calibration() {
     page_.heading("Calibration");
-    const PinholeRadtan &a = record_.calibration.camera, &b = result_.rig.camera;
-    const Eigen::Vector3d pa = record_.calibration.T_b_c.p, pb = result_.rig.T_b_c.p;
-    Table table{"calibration", "As given, and as refined on the way", {"", "given", "refined"}, {}, {}};
-    const auto row = [&](const std::string& name, double given, double refined, int decimals) {
-      table.rows.push_back({name, fixedText(given, decimals), fixedText(refined, decimals)});
-    };
-    row("fx [px]", a.fx, b.fx, 2);
-    row("fy [px]", a.fy, b.fy, 2);
-    row("cx [px]", a.cx, b.cx, 2);
-    row("cy [px]", a.cy, b.cy, 2);
-    row("k1", a.k1, b.k1, 4);
-    row("k2", a.k2, b.k2, 4);
-    for (int axis = 0; axis < 3; ++axis)
-      row(std::string("camera on the IMU, ") + "xyz"[axis] + " [m]", pa[axis], pb[axis], 4);
-    const Pose difference = record_.calibration.T_b_c.inverse() * result_.rig.T_b_c;
-    row("camera on the IMU, turned by [deg]", 0, logRotation(difference.q).norm() * 57.29577951308232, 3);
-    row("time offset [ms]", 0, 1000 * result_.time_offset_s, 2);
-    page_.table(table);
+    page_.table(calibrationTable(record_, result_));
   }
 
   void timing() {
@@ -275,7 +280,8 @@ class Report {
     Table table{"timing", "CPU time a frame [ms]", {"stage", "mean", "median", "95 %", "max"}, {}, {}};
     for (const auto& [name, clock] : {std::pair<std::string, const StageClock*>{"decoding", &s.decoding},
                                       {"tracking", &s.tracking},
-                                      {"estimation", &s.estimation}}) {
+                                      {"estimation", &s.estimation},
+                                      {"mapping", &s.mapping}}) {
       std::vector<double> ms = clock->ms();
       if (ms.empty()) continue;
       Curve curve{name, {}, CurveStyle::kDots};
@@ -283,12 +289,13 @@ class Report {
       curve.points = thinned(curve.points);
       figure.curves.push_back(curve);
       const ErrorStatistics stats = statisticsOf(ms);
-      table.rows.push_back({name, fixedText(stats.mean, 1), fixedText(stats.median, 1), fixedText(stats.p95, 1), fixedText(stats.max, 1)});
+      table.rows.push_back({name, fixedText(stats.mean, 2), fixedText(stats.median, 2), fixedText(stats.p95, 2), fixedText(stats.max, 2)});
     }
     figure.from_zero = true;
     figure.height_px = 300;
     page_.table(table);
     page_.figure(figure, "CPU time of each frame");
+    page_.table(costsTable(record_, result_));
   }
 
   void input() {

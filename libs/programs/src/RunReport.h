@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "Odometry.h"
+#include "RunCosts.h"
 #include "RunSeries.h"
 #include "lintel/evaluation/TrajectoryFile.h"
 
@@ -16,7 +17,7 @@ struct RunRecord {
   std::string configuration;  ///< effective, YAML
   std::string defaults;       ///< the built-in configuration, YAML: only what differs is shown at once
   Rig calibration;            ///< as the recording came with
-  double wall_s = 0;
+  RunCosts costs;             ///< of all but the report itself
   std::vector<std::string> recording_warnings;
   StampedPoses groundtruth;   ///< empty if the recording carries none
   std::string truth_fault;    ///< why it could not be read

@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <time.h>
-
+#include <numeric>
 #include <vector>
+
+#include "lintel/sensing/ThreadTime.h"
 
 namespace lintel {
 
@@ -23,15 +24,13 @@ class StageClock {
     double start_ms_;
   };
 
+  /// For what was measured elsewhere.
+  void add(double ms) { ms_.push_back(ms); }
+
   const std::vector<double>& ms() const { return ms_; }
+  double sumMs() const { return std::accumulate(ms_.begin(), ms_.end(), 0.0); }
 
  private:
-  static double threadTimeMs() {
-    timespec t{};
-    clock_gettime(CLOCK_THREAD_CPUTIME_ID, &t);
-    return 1e3 * static_cast<double>(t.tv_sec) + 1e-6 * static_cast<double>(t.tv_nsec);
-  }
-
   std::vector<double> ms_;
 };
 

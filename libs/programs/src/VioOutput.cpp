@@ -32,6 +32,8 @@ Json stagesJson(const OdometryStatistics& s) {
   Json stages{{"decoding", stageJson(s.decoding.ms())},
               {"tracking", stageJson(s.tracking.ms())},
               {"estimation", stageJson(s.estimation.ms())},
+              {"mapping", stageJson(s.mapping.ms())},
+              {"map fitting", stageJson(s.map_fitting.ms())},
               {"refinement", stageJson(s.refinement.ms())}};
   for (const auto& [name, times] : s.front_end.stages)
     stages["tracking: " + name] = stageJson(std::vector<double>(times.ms.begin(), times.ms.end()));
@@ -71,6 +73,37 @@ Json refinementJson(const OdometryResult& result) {
           {"turned_rad", r.turned_rad}};
 }
 
+Json cameraJson(const PinholeRadtan& c, const Pose& T_b_c, double time_offset_s) {
+  return {{"intrinsics_px", {c.fx, c.fy, c.cx, c.cy}},
+          {"distortion", {c.k1, c.k2, c.p1, c.p2}},
+          {"p_b_c_m", {T_b_c.p.x(), T_b_c.p.y(), T_b_c.p.z()}},
+          {"q_b_c_xyzw", {T_b_c.q.x(), T_b_c.q.y(), T_b_c.q.z(), T_b_c.q.w()}},
+          {"time_offset_s", time_offset_s}};
+}
+
+/// The final calibration; beside it what was given, and what the last window made of it, with its sigmas.
+Json calibrationJson(const OdometryResult& result, const Rig& given) {
+  Json json = cameraJson(result.rig.camera, result.rig.T_b_c, result.time_offset_s);
+  json["given"] = cameraJson(given.camera, given.T_b_c, 0);
+  const CalibrationEstimate& last = result.window_calibration;
+  if (!last.sigma) return json;
+  const CalibrationSigma& s = *last.sigma;
+  json["window"] = cameraJson(last.camera, last.T_b_c, last.time_offset_s);
+  json["window"]["sigma"] = {{"intrinsics_px", {s.camera[0], s.camera[1], s.camera[2], s.camera[3]}},
+                             {"distortion", {s.camera[4], s.camera[5]}},
+                             {"p_b_c_m", {s.p_b_c_m.x(), s.p_b_c_m.y(), s.p_b_c_m.z()}},
+                             {"R_b_c_rad", {s.R_b_c_rad.x(), s.R_b_c_rad.y(), s.R_b_c_rad.z()}},
+                             {"time_offset_s", s.time_offset_s}};
+  return json;
+}
+
+Json cpuJson(const OdometryStatistics& statistics, const RunCosts& costs, double process_ms) {
+  Json json;
+  for (const auto& [stage, ms] : costs.breakdown(statistics, process_ms)) json[stage] = ms;
+  json["whole process"] = process_ms;
+  return json;
+}
+
 }  // namespace
 
 std::string trajectoryText(const std::vector<OdometryPose>& trajectory) {
@@ -86,12 +119,10 @@ std::string trajectoryText(const std::vector<OdometryPose>& trajectory) {
   return text;
 }
 
-std::string statisticsJson(const OdometryResult& result, double wall_s, const std::vector<std::string>& warnings) {
+std::string statisticsJson(const OdometryResult& result, const Rig& given, const RunCosts& costs,
+                           const std::vector<std::string>& warnings) {
   const OdometryStatistics& s = result.statistics;
-  double cpu_ms = 0;
-  for (const StageClock* clock : {&s.tracking, &s.estimation})
-    for (const double ms : clock->ms()) cpu_ms += ms;
-  const auto& c = result.rig.camera;
+  const double wall_s = costs.wall_s, process_ms = processTimeMs();
   const Json json{
       {"frames", s.frames},
       {"frames_with_pose", s.frames_with_pose},
@@ -104,20 +135,21 @@ std::string statisticsJson(const OdometryResult& result, double wall_s, const st
       {"reset_reasons", s.failures},
       {"mean_points_used", s.mean_points_used},
       {"mean_lines_tracked", s.mean_lines_tracked},
+      {"mean_lines_placed", s.mean_lines_placed},
       {"mean_lines_used", s.mean_lines_used},
       {"mean_lines_degenerate", s.mean_lines_degenerate},
       {"mean_lines_constrained", s.mean_lines_constrained},
+      {"degenerate_share", s.mean_lines_placed > 0 ? s.mean_lines_degenerate / s.mean_lines_placed : 0},
+      {"mean_lines_degenerate_by_reason",
+       {{"through_epipole", s.mean_lines_through_epipole},
+        {"direction_unknown", s.mean_lines_direction_unknown},
+        {"distance_unknown", s.mean_lines_distance_unknown}}},
       {"map_points", result.map.points.size()},
       {"map_lines", result.map.lines.size()},
       {"refinement", refinementJson(result)},
-      {"calibration",
-       {{"intrinsics_px", {c.fx, c.fy, c.cx, c.cy}},
-        {"distortion", {c.k1, c.k2, c.p1, c.p2}},
-        {"p_b_c_m", {result.rig.T_b_c.p.x(), result.rig.T_b_c.p.y(), result.rig.T_b_c.p.z()}},
-        {"q_b_c_xyzw",
-         {result.rig.T_b_c.q.x(), result.rig.T_b_c.q.y(), result.rig.T_b_c.q.z(), result.rig.T_b_c.q.w()}},
-        {"time_offset_s", result.time_offset_s}}},
-      {"cpu_ms_per_frame", s.frames > 0 ? cpu_ms / static_cast<double>(s.frames) : 0},
+      {"calibration", calibrationJson(result, given)},
+      {"cpu_ms_per_frame", s.frames > 0 ? process_ms / static_cast<double>(s.frames) : 0},
+      {"cpu_ms", cpuJson(s, costs, process_ms)},
       {"wall_s", wall_s},
       {"frames_per_s", wall_s > 0 ? static_cast<double>(s.frames) / wall_s : 0},
       {"peak_memory_mb", peakMemoryMb()},

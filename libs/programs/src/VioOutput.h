@@ -5,14 +5,16 @@
 #include <vector>
 
 #include "Odometry.h"
+#include "RunCosts.h"
 
 namespace lintel {
 
 /// The trajectory as TUM text: `t x y z qx qy qz qw`, seconds with 9 decimals.
 std::string trajectoryText(const std::vector<OdometryPose>& trajectory);
 
-/// Figures of a run as JSON (stats.json).
-std::string statisticsJson(const OdometryResult& result, double wall_s, const std::vector<std::string>& warnings);
+/// Figures of a run as JSON (stats.json). `given`: the calibration that the recording came with.
+std::string statisticsJson(const OdometryResult& result, const Rig& given, const RunCosts& costs,
+                           const std::vector<std::string>& warnings);
 
 /// Peak resident memory of this process [MB].
 double peakMemoryMb();

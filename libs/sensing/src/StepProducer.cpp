@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "TimeTicks.h"
+#include "lintel/sensing/ThreadTime.h"
 
 namespace lintel {
 
@@ -56,11 +57,12 @@ ImuBatch StepProducer::imuOf(std::int64_t t_ns) {
 }
 
 Step StepProducer::next() {
+  const double start_ms = threadTimeMs();
   Step step;
   while (const std::optional<FrameRef> ref = nextInRange()) {
     std::shared_ptr<const GrayImage> image = decode(*ref);
     if (!image) continue;
-    step.frame = FrameWithImu{{ref->t_ns, std::move(image)}, imuOf(ref->t_ns)};
+    step.frame = FrameWithImu{{ref->t_ns, std::move(image)}, imuOf(ref->t_ns), threadTimeMs() - start_ms};
     previous_ns_ = ref->t_ns;
     ++delivered_;
     break;

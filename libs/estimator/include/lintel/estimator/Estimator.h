@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <Eigen/Core>
 #include <memory>
+#include <optional>
 
 #include "lintel/estimator/EstimatorParams.h"
 #include "lintel/estimator/WindowUpdate.h"
@@ -11,11 +13,20 @@
 
 namespace lintel {
 
-/// Calibration as refined so far, with standard deviations where it is refined.
+/// Standard deviations of a calibration; zero for what is held.
+struct CalibrationSigma {
+  Eigen::Vector3d p_b_c_m = Eigen::Vector3d::Zero();
+  Eigen::Vector3d R_b_c_rad = Eigen::Vector3d::Zero();  ///< about the camera's axes
+  Eigen::Matrix<double, 6, 1> camera = Eigen::Matrix<double, 6, 1>::Zero();  ///< fx fy cx cy [px], k1 k2
+  double time_offset_s = 0;
+};
+
+/// Calibration as refined so far.
 struct CalibrationEstimate {
   PinholeRadtan camera;
   Pose T_b_c;
   double time_offset_s = 0;  ///< an image with stamp t shows the world at t + offset
+  std::optional<CalibrationSigma> sigma;  ///< of the last window; empty while there is none
 };
 
 /// Point-line visual-inertial odometry in a sliding window [Qin2018, Lim2021]: tracks and IMU in, poses and retired

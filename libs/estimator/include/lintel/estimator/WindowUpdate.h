@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -57,12 +58,13 @@ struct WindowUpdate {
   Pose T_w_b;
   Eigen::Vector3d v_w_b = Eigen::Vector3d::Zero();
   ImuBias bias;
+  std::optional<ImuBias> bias_sigma;  ///< standard deviations, about once a second
   std::vector<RetiredKeyframe> keyframes;
   std::vector<RetiredPoint> points;
   std::vector<RetiredLine> lines;
 
   // figures of this step
-  int points_used = 0, lines_tracked = 0, lines_used = 0, lines_degenerate = 0, iterations = 0;
+  int points_used = 0, lines_tracked = 0, lines_placed = 0, lines_used = 0, lines_degenerate = 0, iterations = 0;
   int lines_through_epipole = 0, lines_direction_unknown = 0, lines_distance_unknown = 0, lines_constrained = 0;
   bool keyframe = false, at_rest = false;
 

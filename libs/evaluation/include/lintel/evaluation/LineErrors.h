@@ -34,7 +34,7 @@ struct SegmentErrors {
 /// How far a line map is from the true edges. Shares are of length, one for each tolerance; NaN where there is no
 /// length.
 struct LineErrors {
-  std::size_t lines = 0, degenerate = 0;
+  std::size_t lines = 0, degenerate = 0, constrained = 0;
   double length_m = 0;      ///< of the map
   double observable_m = 0;  ///< length of the true edges that count for recall
   std::vector<double> tolerances_m;
@@ -42,6 +42,7 @@ struct LineErrors {
   std::vector<double> precision;  ///< share of the map within tolerance and angle of a true edge
   std::vector<double> recall;     ///< share of the observable edges within tolerance and angle of the map
   SegmentErrors all_matched, degenerate_matched, well_determined_matched;
+  SegmentErrors constrained_matched;  ///< direction held by parallel lines; degenerate or not
   double duplicates =
       std::numeric_limits<double>::quiet_NaN();  ///< matched length / length of the edges it covers; 1 = none
 };

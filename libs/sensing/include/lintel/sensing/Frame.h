@@ -37,6 +37,7 @@ using ImuBatch = std::vector<ImuSample>;
 struct FrameWithImu {
   Frame frame;
   ImuBatch imu;
+  double reading_ms = 0;  ///< CPU time of reading and decoding, on whichever thread that was
 };
 
 }  // namespace lintel

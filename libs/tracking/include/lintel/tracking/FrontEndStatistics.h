@@ -8,7 +8,7 @@
 
 namespace lintel {
 
-/// Wall time of one stage, a value per run of it [ms].
+/// CPU time of one stage, a value per run of it [ms].
 struct StageTimes {
   std::vector<float> ms;
 
