@@ -29,6 +29,7 @@ figure img { max-width: 100%; height: auto; display: block; }
 figcaption { font-size: .85rem; color: #444; }
 .gallery { display: grid; grid-template-columns: repeat(auto-fit, minmax(min(100%, 24rem), 1fr)); gap: .4rem 1rem; }
 pre { overflow-x: auto; background: #f5f6f8; padding: .6rem; font-size: .8rem; }
+@media screen and (min-width: 64rem) { .wide { margin-right: calc(32rem - 50vw); } }
 @media (max-width: 40rem) { th, td { white-space: normal; padding: .2rem .35rem; } }
 @media print { body { max-width: none; padding: 0; font-size: 10pt; } nav, details { display: none; } .wide { overflow: visible; }
   h2, h3 { break-after: avoid; } tr { break-inside: avoid; } }
