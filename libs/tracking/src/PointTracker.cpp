@@ -48,6 +48,7 @@ void PointTracker::process(const ImagePyramid& pyramid, GyroPrediction& gyro, Fr
   if (pyramid.hasPrevious() && !points_.empty()) {
     StageTimer timer(statistics, "points_klt");
     Followed followed = follow(pyramid, gyro, statistics.points);
+    holdToAnchors(pyramid, followed);
     rejectByEpipolarGeometry(followed, gyro, statistics.points);
     rejectCrowded(followed, statistics.points);
     accept(followed, gyro, statistics.points);
@@ -59,6 +60,7 @@ void PointTracker::process(const ImagePyramid& pyramid, GyroPrediction& gyro, Fr
     addNew(pyramid, statistics.points);
     frames_since_detection_ = 0;
   }
+  anchors_.keepOnly(points_);
 }
 
 void PointTracker::followFrom(const ImagePyramid& pyramid, const std::vector<std::size_t>& indices, int levels,
@@ -115,6 +117,12 @@ PointTracker::Followed PointTracker::follow(const ImagePyramid& pyramid, const G
     statistics.lost_backward += fate == Fate::kNotReturned;
   }
   return followed;
+}
+
+void PointTracker::holdToAnchors(const ImagePyramid& pyramid, Followed& followed) {
+  for (std::size_t i = 0; i < points_.size(); ++i)
+    if (followed.fate[i] == Fate::kAlive && !anchors_.align(points_[i].id, pyramid.image(), followed.px[i]))
+      followed.fate[i] = Fate::kLost;
 }
 
 void PointTracker::rejectByEpipolarGeometry(Followed& followed, GyroPrediction& gyro, PointStatistics& statistics) {
@@ -204,6 +212,7 @@ void PointTracker::addNew(const ImagePyramid& pyramid, PointStatistics& statisti
     p.id = next_id_++;
     p.px = {px.x, px.y};
     p.normalised = camera_.normalise(p.px);
+    anchors_.add(p.id, pyramid.image(), px);
     points_.push_back(p);
     ++statistics.detected;
   }

@@ -10,6 +10,7 @@
 #include "DriftCheck.h"
 #include "GyroPrediction.h"
 #include "ImagePyramid.h"
+#include "PatchAnchors.h"
 #include "StepTranslation.h"
 #include "TwoViewMotion.h"
 #include "lintel/sensing/Rig.h"
@@ -55,6 +56,7 @@ class PointTracker {
   void followFrom(const ImagePyramid& pyramid, const std::vector<std::size_t>& indices, int levels,
                   Followed& followed) const;
   Followed follow(const ImagePyramid& pyramid, const GyroPrediction& gyro, PointStatistics& statistics) const;
+  void holdToAnchors(const ImagePyramid& pyramid, Followed& followed);
   void rejectByEpipolarGeometry(Followed& followed, GyroPrediction& gyro, PointStatistics& statistics);
   void rejectCrowded(Followed& followed, PointStatistics& statistics) const;
   void accept(const Followed& followed, const GyroPrediction& gyro, PointStatistics& statistics);
@@ -66,6 +68,7 @@ class PointTracker {
   PointTrackerParams params_;
   CornerDetector detector_;
   DriftCheck drift_;
+  PatchAnchors anchors_;
   std::vector<PointObservation> points_;
   std::vector<PointFlow> flow_;
   StepTranslation step_;

@@ -1,0 +1,128 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "PatchAnchors.h"
+
+#include <Eigen/Cholesky>
+#include <Eigen/LU>
+#include <algorithm>
+#include <cmath>
+
+namespace lintel {
+namespace {
+
+constexpr int kMaxIterations = 6;
+constexpr float kConverged_px = 0.01f;
+constexpr float kMaxShift_px = 1.5f;      ///< from where the flow has led
+constexpr float kLeastCorrelation = 0.8f;
+constexpr float kLeastArea = 0.6f, kMostArea = 1.6f;  ///< of the view of a patch; beyond: a new patch
+constexpr float kNoise = 0.05f, kShear = 0.02f;         ///< of a pixel of a patch of norm 1; of the linear part in a step
+constexpr int kMaxFailures = 3;
+
+/// Takes brightness and contrast out; false without any texture.
+template <class Patch>
+bool normalise(Patch& patch) {
+  patch.array() -= patch.mean();
+  const float norm = patch.norm();
+  if (norm < 20) return false;
+  patch /= norm;
+  return true;
+}
+
+}  // namespace
+
+bool PatchAnchors::sample(const cv::Mat& image, const Warp& warp, Patch& patch) {
+  const Eigen::Matrix2f& A = warp.A;
+  const float reach_x = (std::abs(A(0, 0)) + std::abs(A(0, 1))) * kHalf, reach_y = (std::abs(A(1, 0)) + std::abs(A(1, 1))) * kHalf;
+  if (!(warp.place.x - reach_x >= 0 && warp.place.y - reach_y >= 0 && warp.place.x + reach_x < image.cols - 1 &&
+        warp.place.y + reach_y < image.rows - 1))
+    return false;
+  int k = 0;
+  for (int v = -kHalf; v <= kHalf; ++v) {
+    float x = warp.place.x + A(0, 1) * static_cast<float>(v) - A(0, 0) * kHalf;
+    float y = warp.place.y + A(1, 1) * static_cast<float>(v) - A(1, 0) * kHalf;
+    for (int u = -kHalf; u <= kHalf; ++u, x += A(0, 0), y += A(1, 0)) {
+      const int ix = static_cast<int>(x), iy = static_cast<int>(y);
+      const float fx = x - static_cast<float>(ix), fy = y - static_cast<float>(iy);
+      const unsigned char* above = image.ptr<unsigned char>(iy) + ix;
+      const unsigned char* below = above + image.step[0];
+      const float top = static_cast<float>(above[0]) + fx * static_cast<float>(above[1] - above[0]);
+      const float bottom = static_cast<float>(below[0]) + fx * static_cast<float>(below[1] - below[0]);
+      patch[k++] = top + fy * (bottom - top);
+    }
+  }
+  return true;
+}
+
+bool PatchAnchors::makeAnchor(const cv::Mat& image, const cv::Point2f& px, Anchor& anchor) {
+  anchor = Anchor{};
+  Patch left, right, up, down;
+  if (!sample(image, {px}, anchor.patch) || !sample(image, {{px.x - 1, px.y}}, left) ||
+      !sample(image, {{px.x + 1, px.y}}, right) || !sample(image, {{px.x, px.y - 1}}, up) ||
+      !sample(image, {{px.x, px.y + 1}}, down))
+    return false;
+  const float mean = anchor.patch.mean();
+  const float norm = (anchor.patch.array() - mean).matrix().norm();
+  if (!normalise(anchor.patch)) return false;
+  const Patch gx = (right - left) / (2 * norm), gy = (down - up) / (2 * norm);
+  int k = 0;
+  for (int v = -kHalf; v <= kHalf; ++v)
+    for (int u = -kHalf; u <= kHalf; ++u, ++k) {
+      const auto fu = static_cast<float>(u), fv = static_cast<float>(v);
+      anchor.J.row(k) << gx[k], gy[k], gx[k] * fu, gx[k] * fv, gy[k] * fu, gy[k] * fv;
+    }
+  for (int c = 0; c < kParameters; ++c) {
+    anchor.J.col(c).array() -= anchor.J.col(c).mean();
+    anchor.J.col(c) -= anchor.patch * anchor.patch.dot(anchor.J.col(c));
+  }
+  Eigen::Matrix<float, kParameters, kParameters> H = anchor.J.transpose() * anchor.J;
+  H.diagonal().tail<4>().array() += kNoise * kNoise / (kPixels * kShear * kShear);
+  const Eigen::LDLT<Eigen::Matrix<float, kParameters, kParameters>> ldlt(H);
+  anchor.inverse = ldlt.solve(Eigen::Matrix<float, kParameters, kParameters>::Identity());
+  return anchor.inverse.allFinite();
+}
+
+bool PatchAnchors::alignPatch(const Anchor& anchor, const cv::Mat& image, Warp& warp) {
+  const cv::Point2f start = warp.place;
+  Patch seen;
+  for (int i = 0; i < kMaxIterations; ++i) {
+    if (!sample(image, warp, seen) || !normalise(seen)) return false;
+    const Eigen::Matrix<float, kParameters, 1> step = anchor.inverse * (anchor.J.transpose() * (seen - anchor.patch));
+    Eigen::Matrix2f turned;
+    turned << 1 + step[2], step[3], step[4], 1 + step[5];
+    warp.A = warp.A * turned.inverse();
+    const Eigen::Vector2f shift = warp.A * step.head<2>();
+    warp.place -= cv::Point2f(shift.x(), shift.y());
+    if (!(std::hypot(warp.place.x - start.x, warp.place.y - start.y) < kMaxShift_px) || !(warp.A.determinant() > 0.1f)) return false;
+    if (shift.norm() < kConverged_px) break;
+  }
+  return sample(image, warp, seen) && normalise(seen) && seen.dot(anchor.patch) > kLeastCorrelation;
+}
+
+void PatchAnchors::add(TrackId id, const cv::Mat& image, const cv::Point2f& px) {
+  if (!makeAnchor(image, px, anchors_[id])) anchors_.erase(id);
+}
+
+bool PatchAnchors::align(TrackId id, const cv::Mat& image, cv::Point2f& px) {
+  const auto it = anchors_.find(id);
+  if (it == anchors_.end()) {
+    add(id, image, px);
+    return true;
+  }
+  Warp warp{px, it->second.A};
+  if (!alignPatch(it->second, image, warp)) return ++it->second.failures <= kMaxFailures;
+  px = warp.place;
+  it->second.A = warp.A;
+  it->second.failures = 0;
+  const float area = warp.A.determinant();
+  if (area < kLeastArea || area > kMostArea) add(id, image, px);
+  return true;
+}
+
+void PatchAnchors::keepOnly(const std::vector<PointObservation>& points) {
+  auto point = points.begin();
+  for (auto it = anchors_.begin(); it != anchors_.end();) {
+    while (point != points.end() && point->id < it->first) ++point;
+    it = point != points.end() && point->id == it->first ? std::next(it) : anchors_.erase(it);
+  }
+}
+
+}  // namespace lintel

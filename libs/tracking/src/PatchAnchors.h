@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <Eigen/Core>
+#include <map>
+#include <opencv2/core.hpp>
+
+#include "lintel/tracking/FrameTracks.h"
+
+namespace lintel {
+
+/// Holds points to where they were first seen. Optical flow from frame to frame adds its errors up: after forty frames a
+/// track has slipped by half a pixel. Here the patch of the first sighting is aligned with the current image, turned,
+/// scaled and sheared as the view demands, from where the flow has led [Baker2004, inverse compositional; Shi1994].
+class PatchAnchors {
+ public:
+  /// The patch of a new track.
+  void add(TrackId id, const cv::Mat& image, const cv::Point2f& px);
+
+  /// Moves `px` to the place in `image` (8 bit grey) that looks like the track's patch; leaves it while there is no such
+  /// place. False when there has been none for some frames: the track has slipped off what it followed.
+  bool align(TrackId id, const cv::Mat& image, cv::Point2f& px);
+
+  /// Forgets the patches of tracks that are not in `points` (ascending id).
+  void keepOnly(const std::vector<PointObservation>& points);
+
+ private:
+  static constexpr int kHalf = 6, kSide = 2 * kHalf + 1, kPixels = kSide * kSide;
+  static constexpr int kParameters = 6;  ///< shift, and the linear part
+  using Patch = Eigen::Matrix<float, kPixels, 1>;
+
+  /// The view of a patch: image = place + A offset.
+  struct Warp {
+    cv::Point2f place;
+    Eigen::Matrix2f A = Eigen::Matrix2f::Identity();
+  };
+
+  struct Anchor {
+    Patch patch;                                            ///< mean 0, norm 1
+    Eigen::Matrix<float, kPixels, kParameters> J;           ///< of the patch, brightness and contrast taken out
+    Eigen::Matrix<float, kParameters, kParameters> inverse;  ///< of J' J, damped
+    Eigen::Matrix2f A = Eigen::Matrix2f::Identity();        ///< in the last image that agreed
+    int failures = 0;
+  };
+
+  static bool sample(const cv::Mat& image, const Warp& warp, Patch& patch);
+  static bool makeAnchor(const cv::Mat& image, const cv::Point2f& px, Anchor& anchor);
+  static bool alignPatch(const Anchor& anchor, const cv::Mat& image, Warp& warp);
+
+  std::map<TrackId, Anchor> anchors_;
+};
+
+}  // namespace lintel
