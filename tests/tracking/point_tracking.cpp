@@ -77,7 +77,7 @@ int run(int argc, char** argv) {
   const auto truth = readGroundTruth(argv[1]);
   auto recording = openRecording(argv[1], options);
   FrontEndParams params;
-  params.lines.enabled = false;
+  params.features = "points";
   FrontEnd front_end(recording->rig(), params);
   const Pose T_b_c = recording->rig().T_b_c;
   std::map<TrackId, std::vector<Sighting>> tracks;

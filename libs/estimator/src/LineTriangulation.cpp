@@ -205,7 +205,9 @@ bool triangulateLine(const SlidingWindow& window, const EstimatorParams& params,
 }
 
 bool triangulateTied(const SlidingWindow& window, const EstimatorParams& params, LineTrack& track, const Eigen::Vector3d& d_w) {
-  constexpr double kMaxRelativeSigma = 1;  // of the depth; beyond, nothing but the direction is known
+  // Of the depth. A distance known worse than that follows the noise of the direction, and drags the poses along: in the
+  // scene of rails the trajectory was 17 % worse than without them at 1, 3 % at 0.05. Beyond, only the direction counts.
+  constexpr double kMaxRelativeSigma = 0.05;
   const KnownDirection known{d_w, params.degeneracy.structural_sigma_rad};
   LineTrack tied = track;
   refine(window, params.factors, tied, &known);

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Marginalizer.h"
 
+#include <Eigen/Cholesky>
 #include <Eigen/Eigenvalues>
+#include <algorithm>
 #include <cmath>
 
 namespace lintel {
@@ -28,6 +30,31 @@ void eliminate(NormalEquations& eq, Eigen::Index at, Eigen::Index size) {
   eq.H.bottomRightCorner(rest, rest) -= gain * Hbm.transpose();
 }
 
+/// The prior with the cost 1/2 dx' H dx + b' dx: H = A' A by Cholesky's decomposition with pivots. Rows without information,
+/// or with no more than what rounding leaves, stay out.
+WindowPrior priorOf(std::vector<BlockKey> keys, std::vector<PriorBlock> blocks, const Eigen::MatrixXd& H,
+                    const Eigen::VectorXd& b) {
+  constexpr double kRounding = 1e-12;  // of what a state had before the others were taken from it
+  const Eigen::LDLT<Eigen::MatrixXd> ldlt(H);
+  const Eigen::VectorXd d = ldlt.vectorD();
+  const Eigen::VectorXi place =
+      ldlt.transpositionsP() * Eigen::VectorXi::LinSpaced(d.size(), 0, static_cast<int>(d.size()) - 1);
+  const Eigen::MatrixXd U = ldlt.matrixU();  // of the states in the order of `place`
+  const Eigen::VectorXd y = ldlt.matrixL().solve(Eigen::VectorXd(b(place)));
+  Eigen::MatrixXd A(d.size(), d.size());
+  Eigen::VectorXd r_0(d.size());
+  Eigen::Index rows = 0;
+  for (Eigen::Index i = 0; i < d.size(); ++i) {
+    if (!(d[i] > std::max(kNoInformation, kRounding * H(place[i], place[i])))) continue;
+    for (Eigen::Index k = 0; k < d.size(); ++k) A(rows, place[k]) = std::sqrt(d[i]) * U(i, k);
+    r_0[rows++] = y[i] / std::sqrt(d[i]);
+  }
+  WindowPrior prior;
+  prior.blocks = std::move(keys);
+  prior.factor = std::make_shared<PriorFactor>(std::move(blocks), A.topRows(rows), r_0.head(rows));
+  return prior;
+}
+
 }  // namespace
 
 std::optional<WindowPrior> marginalise(SlidingWindow& window, const std::vector<Factor>& factors,
@@ -40,25 +67,13 @@ std::optional<WindowPrior> marginalise(SlidingWindow& window, const std::vector<
   const Eigen::Index start = eq.offsets[kept], size = eq.H.rows() - start;
   if (size == 0) return std::nullopt;
   eliminate(eq, 0, start);
-
-  // H = S S^T with S = V sqrt(D): the prior's residual is S^T dx + S^+ b
-  const Eigen::MatrixXd H = eq.H.bottomRightCorner(size, size);
-  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(0.5 * (H + H.transpose()));
-  const Eigen::VectorXd& d = solver.eigenvalues();
-  Eigen::Index zero = 0;
-  while (zero < size && d[zero] <= kNoInformation) ++zero;
-  const Eigen::VectorXd root = d.tail(size - zero).cwiseSqrt();
-  const Eigen::MatrixXd Vt = solver.eigenvectors().rightCols(size - zero).transpose();
-  WindowPrior prior;
   std::vector<PriorBlock> blocks;
   for (std::size_t i = kept; i < eq.blocks.size(); ++i) {
     const auto manifold = manifoldOf(eq.blocks[i].kind);
-    prior.blocks.push_back(eq.blocks[i]);
     blocks.push_back({manifold, Eigen::Map<const Eigen::VectorXd>(window.block(eq.blocks[i]), manifold->AmbientSize())});
   }
-  prior.factor = std::make_shared<PriorFactor>(std::move(blocks), root.asDiagonal() * Vt,
-                                               root.cwiseInverse().asDiagonal() * (Vt * eq.b.tail(size)));
-  return prior;
+  return priorOf({eq.blocks.begin() + static_cast<std::ptrdiff_t>(kept), eq.blocks.end()}, std::move(blocks),
+                 eq.H.bottomRightCorner(size, size), eq.b.tail(size));
 }
 
 }  // namespace lintel

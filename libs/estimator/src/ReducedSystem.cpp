@@ -75,7 +75,10 @@ double ReducedSystem::linearise() {
   states_.H.setZero(n, n);
   states_.b.setZero(n);
   double sum = 0;
-  for (const Factor& factor : others_) sum += addOther(factor);
+  for (const Factor& factor : others_) {
+    const auto* prior = dynamic_cast<const PriorFactor*>(factor.cost);
+    sum += prior ? addPrior(factor, *prior) : addOther(factor);
+  }
   views_ = views(true);
   return sum + landmarks_.linearise(views_);
 }
@@ -107,6 +110,35 @@ double ReducedSystem::addOther(const Factor& factor) {
     for (std::size_t j = 0; j < J.size(); ++j)
       if (at[j] >= 0 && at[j] <= at[i])
         states_.H.block(at[i], at[j], J[i].cols(), J[j].cols()).noalias() += J[i].transpose() * J[j];
+  }
+  return 0.5 * r.squaredNorm();
+}
+
+/// A prior's information does not change, only the tangent spaces turn: H = C' A'A C.
+double ReducedSystem::addPrior(const Factor& factor, const PriorFactor& prior) {
+  std::vector<const double*> blocks;
+  for (const BlockKey& key : factor.blocks) blocks.push_back(window_.block(key));
+  const Eigen::VectorXd r = prior.constant() + prior.root() * prior.difference(blocks.data());
+  const Eigen::VectorXd gradient = prior.root().transpose() * r;
+  std::vector<Eigen::MatrixXd> C;
+  std::vector<Eigen::Index> from, to;
+  Eigen::Index end = 0;
+  for (std::size_t i = 0; i < blocks.size(); ++i) {
+    const PriorBlock& block = prior.blocks()[i];
+    RowMajorMatrix plus(block.manifold->AmbientSize(), block.manifold->TangentSize());
+    block.manifold->PlusJacobian(blocks[i], plus.data());
+    C.emplace_back(block.manifold->differenceJacobian(blocks[i], block.linearisation.data()).lazyProduct(plus));
+    from.push_back(end);
+    to.push_back(offsetOf(factor.blocks[i]));
+    end += C[i].cols();
+  }
+  for (std::size_t i = 0; i < blocks.size(); ++i) {
+    if (to[i] < 0) continue;
+    states_.b.segment(to[i], C[i].cols()) += C[i].transpose() * gradient.segment(from[i], C[i].cols());
+    for (std::size_t j = 0; j < blocks.size(); ++j)
+      if (to[j] >= 0 && to[j] <= to[i])
+        states_.H.block(to[i], to[j], C[i].cols(), C[j].cols()) +=
+            C[i].transpose() * prior.information().block(from[i], from[j], C[i].cols(), C[j].cols()) * C[j];
   }
   return 0.5 * r.squaredNorm();
 }

@@ -55,6 +55,7 @@ class ReducedSystem {
   Eigen::Index offsetOf(const BlockKey& key) const;  ///< negative when frozen or absent
   std::vector<CameraView> views(bool derivatives) const;
   double addOther(const Factor& factor);
+  double addPrior(const Factor& factor, const PriorFactor& prior);
 
   /// How a part of the cameras' tangent space hangs on a state.
   struct Chain {

@@ -160,14 +160,23 @@ TEST(DegenerateScenes, PolesAndStrutsAmongRailsAreNotBent) {
       EXPECT_TRUE(line.group == 0 || angle_deg(line, mixed) < 1) << "track " << id << " is tied to what it is not parallel to";
       continue;
     }
-    // bent is what noise does not explain
-    const double noise_deg = 2 * line.sigma_direction_rad * 180 / M_PI;
-    EXPECT_LT(angle_deg(line, mixed), angle_deg(dropped->second, mixed) + 1 + noise_deg) << "track " << id;
+    EXPECT_LT(angle_deg(line, mixed), angle_deg(dropped->second, mixed) + 1) << "track " << id;
     ++compared;
   }
   EXPECT_GE(compared, 10);
   EXPECT_GE(rails_tied, 5);
-  EXPECT_LT(constrain.position_error_m, 1.05 * drop.position_error_m);
+}
+
+TEST(DegenerateScenes, PolesAndStrutsAmongRailsCostNoAccuracy) {
+  std::vector<Segment3> lines = rails();
+  for (const Segment3& pole : polesAndStruts()) lines.push_back(pole);
+  double log_ratio = 0;
+  constexpr int kSeeds = 4;  // a single flight's error changes by a tenth with any rounding
+  for (std::uint64_t seed = 1; seed <= kSeeds; ++seed) {
+    const TrackedFlight mixed = flight(lines, seed);
+    log_ratio += std::log(fly(mixed, "constrain").position_error_m / fly(mixed, "drop").position_error_m) / kSeeds;
+  }
+  EXPECT_LT(std::exp(log_ratio), 1.05);
 }
 
 TEST(DegenerateScenes, WithPolesAndStrutsAloneNothingIsTied) {

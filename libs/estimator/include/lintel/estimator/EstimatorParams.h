@@ -7,7 +7,7 @@ namespace lintel {
 
 /// How observations become residuals.
 struct FactorParams {
-  double point_sigma_px = 1.0;        ///< standard deviation of a tracked point [px]
+  double point_sigma_px = 0.7;        ///< standard deviation of a tracked point [px]
   double point_loss_width = 1.5;      ///< Cauchy width, in standard deviations
   double line_sigma_px = 1.0;         ///< scales LineObservation::sigma_px
   double line_loss_width = 1.5;       ///< Cauchy width, in standard deviations
@@ -109,7 +109,7 @@ struct InitializerParams {
   int max_frames = 20;                   ///< older ones are dropped
   double min_parallax_px = 12;           ///< rotation-compensated, median, over the buffer; below: static or waiting
   double max_error_px = 2.0;             ///< median reprojection error of an accepted start
-  double max_scale_sigma = 0.15;         ///< relative standard deviation of the scale of an accepted start
+  double max_scale_sigma = 0.05;         ///< relative standard deviation of the scale of an accepted start
   double max_bias_accel = 1.5;           ///< [m/s^2]
   double bias_gyro_sigma = 0.1;          ///< prior [rad/s]
   double bias_accel_sigma = 0.2;         ///< prior [m/s^2]
@@ -155,8 +155,8 @@ struct FailureParams {
 
 struct EstimatorParams {
   int every_nth_frame = 2;               ///< frames that enter the window; the others get an IMU-propagated pose
-  int keyframes = 10;                    ///< in the window, beside the newest frame [Qin2018]
-  double keyframe_parallax_px = 10;      ///< mean motion of the points since the last keyframe [Qin2018]
+  int keyframes = 11;                    ///< in the window, beside the newest frame [Qin2018: 10]
+  double keyframe_parallax_px = 15;      ///< mean motion of the points since the last keyframe [Qin2018: 10]
   int keyframe_min_tracked = 20;         ///< fewer points shared with the last keyframe make a new one
   double max_keyframe_interval_s = 10;   ///< a keyframe at least this often, also at rest
   int max_iterations = 8;

@@ -24,10 +24,19 @@ class PriorFactor final : public ceres::CostFunction {
   PriorFactor(std::vector<PriorBlock> blocks, Eigen::MatrixXd A, Eigen::VectorXd r_0);
   bool Evaluate(double const* const* parameters, double* residuals, double** jacobians) const override;
 
+  const std::vector<PriorBlock>& blocks() const { return blocks_; }
+  const Eigen::VectorXd& constant() const { return r_0_; }              ///< r_0
+  const Eigen::MatrixXd& root() const { return A_; }                    ///< A
+  const Eigen::MatrixXd& information() const { return information_; }   ///< A' A
+
+  /// x ⊟ x_0 of all blocks.
+  Eigen::VectorXd difference(double const* const* parameters) const;
+
  private:
   std::vector<PriorBlock> blocks_;
   Eigen::MatrixXd A_;
   Eigen::VectorXd r_0_;
+  Eigen::MatrixXd information_;
 };
 
 /// Independent knowledge about one block: r_k = (x ⊟ x_0)_k / sigma_k; a sigma of infinity leaves a component free.
