@@ -3,7 +3,8 @@
 # (doc/): configurations, and what find_package(lintel) reads. Component `development` is what programmers need.
 include(CMakePackageConfigHelpers)
 
-install(DIRECTORY share/lintel TYPE DATA)
+install(DIRECTORY share/lintel TYPE DATA
+  PATTERN "*.sbatch" PERMISSIONS OWNER_READ OWNER_WRITE OWNER_EXECUTE GROUP_READ GROUP_EXECUTE WORLD_READ WORLD_EXECUTE)
 
 set(lintel_cmake_folder ${CMAKE_INSTALL_LIBDIR}/cmake/lintel)
 list(TRANSFORM LINTEL_LIBRARIES_NEED REPLACE "(.+)" "find_dependency(\\1)" OUTPUT_VARIABLE LINTEL_FIND_DEPENDENCIES)
