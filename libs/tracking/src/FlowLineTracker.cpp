@@ -16,6 +16,9 @@ constexpr double kNoise_px = 0.35;           ///< of an end across the line, fro
 constexpr double kSureDepth_px = 1.0;        ///< depths that say less are not asked
 constexpr double kFade = 0.8;                ///< of a drift, per frame
 constexpr double kMaxDrift_px = 4;           ///< a line that drifts further follows another edge
+constexpr double kJump_px = 2;               ///< so far from where it was expected a line must look as before
+constexpr float kSideTolerance = 0.5f;       ///< of the grey levels beside it, in steps of its edge
+constexpr float kLeastStep = 8;              ///< grey levels
 constexpr double kSame_px = 1.0;             ///< one edge as seen twice in the same image
 
 }  // namespace
@@ -101,10 +104,25 @@ std::vector<ImageLine> FlowLineTracker::mergeDetections(const ImagePyramid& pyra
   return std::move(merged.fresh);
 }
 
-/// Puts a track on the edge that was found for it; false when that moves as another edge would.
-bool FlowLineTracker::moveTo(const ImageLine& line, const StepTranslation& step, Track& track) const {
+namespace {
+
+/// Whether an edge may be the one with these grey levels beside it: light changes them both a little.
+bool maybeSame(const EdgeSides& now, const EdgeSides& before) {
+  const float tolerance = std::max(kLeastStep, kSideTolerance * before.step());
+  return std::abs(now.dark - before.dark) < tolerance && std::abs(now.bright - before.bright) < tolerance;
+}
+
+}  // namespace
+
+/// Puts a track on the edge that was found for it; false when that moves or looks as another edge would.
+bool FlowLineTracker::moveTo(const ImagePyramid& pyramid, const ImageLine& line, const StepTranslation& step,
+                             Track& track) const {
   const Eigen::Vector2d surprise = normalMotion(track.expected, line);
-  if (track.motion && surprise.cwiseAbs().maxCoeff() > kSlack * track.limit_px) return false;
+  const double surprise_px = surprise.cwiseAbs().maxCoeff();
+  if (track.motion && surprise_px > kSlack * track.limit_px) return false;
+  const auto sides = refiner_.sides(pyramid.image(), line);
+  if (track.motion && surprise_px > kJump_px && sides && track.sides && !maybeSame(*sides, *track.sides)) return false;
+  if (sides) track.sides = sides;
   const double noise_px = std::max(kNoise_px, track.typical_px);
   if (track.carried) {
     const bool sure = track.carried->sigma_px.maxCoeff() < kSureDepth_px;
@@ -142,7 +160,7 @@ void FlowLineTracker::refine(const ImagePyramid& pyramid, const StepTranslation&
       end(track, statistics.lost_view, statistics);
       continue;
     }
-    if (!moveTo(*clipped, step, track)) {
+    if (!moveTo(pyramid, *clipped, step, track)) {
       end(track, statistics.lost_jump, statistics);
       continue;
     }

@@ -32,6 +32,7 @@ class FlowLineTracker : public LineTracker {
     std::optional<LineDepth> depth;
     Eigen::Vector2d drift{0, 0};            ///< of its ends from where its depth brings them, summed up, fading
     std::optional<Eigen::Vector2d> motion;  ///< of its ends beyond the rotation, see CarriedLine
+    std::optional<EdgeSides> sides;         ///< when last seen
     double sigma_px = 1;
     int length = 0;      ///< frames in which it was published
     int sightings = 1;   ///< frames in which the detector saw it
@@ -44,7 +45,7 @@ class FlowLineTracker : public LineTracker {
                LineStatistics& statistics);
   std::vector<ImageLine> mergeDetections(const ImagePyramid& pyramid, FrontEndStatistics& statistics);
   void refine(const ImagePyramid& pyramid, const StepTranslation& step, LineStatistics& statistics);
-  bool moveTo(const ImageLine& line, const StepTranslation& step, Track& track) const;
+  bool moveTo(const ImagePyramid& pyramid, const ImageLine& line, const StepTranslation& step, Track& track) const;
   void extend(const ImagePyramid& pyramid, const ImageLine& united, Track& track) const;
   void dropDuplicates(LineStatistics& statistics);
   void addNew(const ImagePyramid& pyramid, const std::vector<ImageLine>& fresh);

@@ -101,20 +101,18 @@ void PatchAnchors::add(TrackId id, const cv::Mat& image, const cv::Point2f& px) 
   if (!makeAnchor(image, px, anchors_[id])) anchors_.erase(id);
 }
 
-bool PatchAnchors::align(TrackId id, const cv::Mat& image, cv::Point2f& px) {
+AnchorVerdict PatchAnchors::align(TrackId id, const cv::Mat& image, cv::Point2f& px) {
   const auto it = anchors_.find(id);
-  if (it == anchors_.end()) {
-    add(id, image, px);
-    return true;
-  }
+  if (it == anchors_.end()) return AnchorVerdict::kUnsure;
   Warp warp{px, it->second.A};
-  if (!alignPatch(it->second, image, warp)) return ++it->second.failures <= kMaxFailures;
+  if (!alignPatch(it->second, image, warp))
+    return ++it->second.failures > kMaxFailures ? AnchorVerdict::kLost : AnchorVerdict::kUnsure;
   px = warp.place;
   it->second.A = warp.A;
   it->second.failures = 0;
   const float area = warp.A.determinant();
   if (area < kLeastArea || area > kMostArea) add(id, image, px);
-  return true;
+  return AnchorVerdict::kHeld;
 }
 
 void PatchAnchors::keepOnly(const std::vector<PointObservation>& points) {

@@ -9,17 +9,24 @@
 
 namespace lintel {
 
+/// What became of a track at its patch.
+enum class AnchorVerdict {
+  kHeld,    ///< moved to the place that looks like its patch
+  kUnsure,  ///< no such place, or no patch: it stays where the flow has led
+  kLost,    ///< no such place for some frames: it has slipped off what it followed
+};
+
 /// Holds points to where they were first seen. Optical flow from frame to frame adds its errors up: after forty frames a
 /// track has slipped by half a pixel. Here the patch of the first sighting is aligned with the current image, turned,
 /// scaled and sheared as the view demands, from where the flow has led [Baker2004, inverse compositional; Shi1994].
 class PatchAnchors {
  public:
-  /// The patch of a new track.
+  /// The patch of a track that has none.
   void add(TrackId id, const cv::Mat& image, const cv::Point2f& px);
+  bool has(TrackId id) const { return anchors_.count(id) > 0; }
 
-  /// Moves `px` to the place in `image` (8 bit grey) that looks like the track's patch; leaves it while there is no such
-  /// place. False when there has been none for some frames: the track has slipped off what it followed.
-  bool align(TrackId id, const cv::Mat& image, cv::Point2f& px);
+  /// Moves `px` to the place in `image` (8 bit grey) that looks like the track's patch, if there is one.
+  AnchorVerdict align(TrackId id, const cv::Mat& image, cv::Point2f& px);
 
   /// Forgets the patches of tracks that are not in `points` (ascending id).
   void keepOnly(const std::vector<PointObservation>& points);

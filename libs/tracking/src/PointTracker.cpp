@@ -48,7 +48,7 @@ void PointTracker::process(const ImagePyramid& pyramid, GyroPrediction& gyro, Fr
   if (pyramid.hasPrevious() && !points_.empty()) {
     StageTimer timer(statistics, "points_klt");
     Followed followed = follow(pyramid, gyro, statistics.points);
-    holdToAnchors(pyramid, followed);
+    startAnchors(pyramid, followed);
     rejectByEpipolarGeometry(followed, gyro, statistics.points);
     rejectCrowded(followed, statistics.points);
     accept(followed, gyro, statistics.points);
@@ -64,37 +64,48 @@ void PointTracker::process(const ImagePyramid& pyramid, GyroPrediction& gyro, Fr
 }
 
 void PointTracker::followFrom(const ImagePyramid& pyramid, const std::vector<std::size_t>& indices, int levels,
-                              Followed& followed) const {
+                              Followed& followed) {
   if (indices.empty()) return;
   std::vector<cv::Point2f> from, to;
   for (const std::size_t i : indices) {
     from.emplace_back(static_cast<float>(points_[i].px.x()), static_cast<float>(points_[i].px.y()));
     to.push_back(followed.px[i]);
   }
-  std::vector<cv::Point2f> back = from;
-  std::vector<unsigned char> found, returned;
-  const cv::Size window(params_.window_px, params_.window_px);
-  const cv::TermCriteria criteria(cv::TermCriteria::COUNT | cv::TermCriteria::EPS, params_.max_iterations, 0.01);
-  const int top = std::min(levels, pyramid.levels()) - 1;
-  cv::calcOpticalFlowPyrLK(pyramid.previous(), pyramid.current(), from, to, found, cv::noArray(), window, top, criteria,
-                           cv::OPTFLOW_USE_INITIAL_FLOW, kMinEigenvalue);
-  cv::calcOpticalFlowPyrLK(pyramid.current(), pyramid.previous(), to, back, returned, cv::noArray(), window,
-                           std::min(kBackwardLevels, pyramid.levels()) - 1, criteria, cv::OPTFLOW_USE_INITIAL_FLOW,
-                           kMinEigenvalue);
+  std::vector<unsigned char> found;
+  cv::calcOpticalFlowPyrLK(pyramid.previous(), pyramid.current(), from, to, found, cv::noArray(), window(),
+                           std::min(levels, pyramid.levels()) - 1, criteria(), cv::OPTFLOW_USE_INITIAL_FLOW, kMinEigenvalue);
+  std::vector<std::size_t> unsure;
   for (std::size_t k = 0; k < indices.size(); ++k) {
     const std::size_t i = indices[k];
     followed.px[i] = to[k];
-    if (!found[k] || !inside(camera_, to[k], params_.border_px))
-      followed.fate[i] = Fate::kLost;
-    else if (!returned[k] || cv::norm(back[k] - from[k]) > params_.forward_backward_px)
-      followed.fate[i] = Fate::kNotReturned;
-    else
-      followed.fate[i] = Fate::kAlive;
+    followed.fate[i] = Fate::kLost;
+    if (!found[k] || !inside(camera_, to[k], params_.border_px)) continue;
+    const AnchorVerdict verdict = anchors_.align(points_[i].id, pyramid.image(), followed.px[i]);
+    if (verdict == AnchorVerdict::kHeld) followed.fate[i] = Fate::kAlive;
+    if (verdict == AnchorVerdict::kUnsure) unsure.push_back(i);
   }
+  followBack(pyramid, unsure, followed);
+}
+
+void PointTracker::followBack(const ImagePyramid& pyramid, const std::vector<std::size_t>& indices, Followed& followed) const {
+  if (indices.empty()) return;
+  std::vector<cv::Point2f> from, to;
+  for (const std::size_t i : indices) {
+    from.push_back(followed.px[i]);
+    to.emplace_back(static_cast<float>(points_[i].px.x()), static_cast<float>(points_[i].px.y()));
+  }
+  const std::vector<cv::Point2f> before = to;
+  std::vector<unsigned char> found;
+  cv::calcOpticalFlowPyrLK(pyramid.current(), pyramid.previous(), from, to, found, cv::noArray(), window(),
+                           std::min(kBackwardLevels, pyramid.levels()) - 1, criteria(), cv::OPTFLOW_USE_INITIAL_FLOW,
+                           kMinEigenvalue);
+  for (std::size_t k = 0; k < indices.size(); ++k)
+    followed.fate[indices[k]] =
+        found[k] && cv::norm(to[k] - before[k]) <= params_.forward_backward_px ? Fate::kAlive : Fate::kNotReturned;
 }
 
 PointTracker::Followed PointTracker::follow(const ImagePyramid& pyramid, const GyroPrediction& gyro,
-                                            PointStatistics& statistics) const {
+                                            PointStatistics& statistics) {
   Followed followed;
   followed.fate.assign(points_.size(), Fate::kLost);
   std::vector<std::size_t> steady, others;
@@ -119,10 +130,10 @@ PointTracker::Followed PointTracker::follow(const ImagePyramid& pyramid, const G
   return followed;
 }
 
-void PointTracker::holdToAnchors(const ImagePyramid& pyramid, Followed& followed) {
+void PointTracker::startAnchors(const ImagePyramid& pyramid, const Followed& followed) {
   for (std::size_t i = 0; i < points_.size(); ++i)
-    if (followed.fate[i] == Fate::kAlive && !anchors_.align(points_[i].id, pyramid.image(), followed.px[i]))
-      followed.fate[i] = Fate::kLost;
+    if (followed.fate[i] == Fate::kAlive && !anchors_.has(points_[i].id))
+      anchors_.add(points_[i].id, pyramid.image(), followed.px[i]);
 }
 
 void PointTracker::rejectByEpipolarGeometry(Followed& followed, GyroPrediction& gyro, PointStatistics& statistics) {

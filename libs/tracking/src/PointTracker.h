@@ -52,17 +52,19 @@ class PointTracker {
     std::vector<Fate> fate;
   };
 
-  /// Follows the points of `indices` from where `followed` guesses them, and back again.
-  void followFrom(const ImagePyramid& pyramid, const std::vector<std::size_t>& indices, int levels,
-                  Followed& followed) const;
-  Followed follow(const ImagePyramid& pyramid, const GyroPrediction& gyro, PointStatistics& statistics) const;
-  void holdToAnchors(const ImagePyramid& pyramid, Followed& followed);
+  /// Follows the points of `indices` from where `followed` guesses them; those that are not held to their patch also back.
+  void followFrom(const ImagePyramid& pyramid, const std::vector<std::size_t>& indices, int levels, Followed& followed);
+  void followBack(const ImagePyramid& pyramid, const std::vector<std::size_t>& indices, Followed& followed) const;
+  Followed follow(const ImagePyramid& pyramid, const GyroPrediction& gyro, PointStatistics& statistics);
+  void startAnchors(const ImagePyramid& pyramid, const Followed& followed);
   void rejectByEpipolarGeometry(Followed& followed, GyroPrediction& gyro, PointStatistics& statistics);
   void rejectCrowded(Followed& followed, PointStatistics& statistics) const;
   void accept(const Followed& followed, const GyroPrediction& gyro, PointStatistics& statistics);
   void rejectDrifting(const GyroPrediction& gyro, PointStatistics& statistics);
   void addNew(const ImagePyramid& pyramid, PointStatistics& statistics);
   std::vector<cv::Point2f> pixels() const;
+  cv::Size window() const { return {params_.window_px, params_.window_px}; }
+  cv::TermCriteria criteria() const { return {cv::TermCriteria::COUNT | cv::TermCriteria::EPS, params_.max_iterations, 0.01}; }
 
   PinholeRadtan camera_;
   PointTrackerParams params_;

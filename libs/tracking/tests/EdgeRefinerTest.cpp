@@ -96,6 +96,15 @@ TEST_F(EdgeRefinerTest, findsNothingOnAPlainImage) {
   EXPECT_FALSE(refiner_.refine(pyramid_, line(-0.3, 0, 0.3, 0), 3, 0));
 }
 
+TEST_F(EdgeRefinerTest, sidesAreTheGreyLevelsBesideTheEdge) {
+  show(testing::strips({strip_}, {}, 70, 150));
+  const auto sides = refiner_.sides(pyramid_.image(), line(-0.4, -0.266, 0.4, -0.234));
+  ASSERT_TRUE(sides);
+  EXPECT_NEAR(sides->dark, 70, 2);
+  EXPECT_NEAR(sides->bright, 150, 2);
+  EXPECT_FALSE(refiner_.sides(pyramid_.image(), line(-2, -0.6, -0.7, -0.5))) << "hardly any of it in the image";
+}
+
 TEST_F(EdgeRefinerTest, turnsTheNormalToTheBrighterSide) {
   show(testing::strips({strip_}));
   for (const bool reversed : {false, true}) {

@@ -170,6 +170,28 @@ TEST(FrontEnd, anEdgeWhoseContrastTurnsRoundIsAnotherLine) {
   for (const LineObservation& line : tracks.back().lines) EXPECT_EQ(before.count(line.id), 0u);
 }
 
+TEST(FrontEnd, aNeighbouringEdgeIsAnotherLineUnlessItLooksTheSame) {
+  // Three parallel edges keep the step's typical motion small; the middle one is 2.6 px (0.0087) further down in the end.
+  const auto scene = [](double y, double dark, double bright) {
+    return [=](const Eigen::Vector2d& x) {
+      if (x.y() > y && x.y() < 0.12 && std::abs(x.x()) < 0.3) return bright;
+      return x.y() > -0.12 && x.y() <= y && std::abs(x.x()) < 0.3 ? dark : 40.0;
+    };
+  };
+  const auto before = scene(0, 90, 140), same = scene(0.0087, 95, 145), other = scene(0.0087, 140, 220);
+  const auto middleId = [](const FrameTracks& tracks) -> TrackId {
+    for (const LineObservation& line : tracks.lines)
+      if (std::abs(line.start_px.y() - 160) < 6 && std::abs(line.end_px.y() - 160) < 6) return line.id;
+    return 0;
+  };
+  for (const bool looks_the_same : {true, false}) {
+    const auto tracks = trackTurning({before, before, before, before, looks_the_same ? same : other}, linesAtOnce(), {0, 0, 0});
+    const TrackId id = middleId(tracks[3]);
+    ASSERT_NE(id, 0u);
+    EXPECT_EQ(middleId(tracks[4]) == id, looks_the_same);
+  }
+}
+
 TEST(FrontEnd, publishesALineOnlyWhenSeenTwice) {
   FrontEndParams params = linesAtOnce();
   params.lines.sightings_before_use = 2;
