@@ -26,7 +26,8 @@ struct FitView {
 };
 
 struct Normal {
-  Eigen::Matrix4d H = Eigen::Matrix4d::Zero();
+  Eigen::Matrix4d H = Eigen::Matrix4d::Zero();  ///< of the views
+  Eigen::Matrix4d H_tie = Eigen::Matrix4d::Zero();
   Eigen::Vector4d b = Eigen::Vector4d::Zero();
   double cost = 0;
 };
@@ -42,12 +43,53 @@ std::vector<FitView> fitViews(const KeyframeCameras& cameras, const LineRecord& 
   return views;
 }
 
-Normal normalEquations(const std::vector<FitView>& views, const Eigen::Vector3d& m, const Eigen::Vector3d& d,
-                       double loss_width) {
+/// What lines are fitted to.
+struct FitData {
+  std::vector<FitView> views;
+  std::optional<LineTie> tie;
+  double loss_width = 1;
+};
+
+/// The logarithm of a product of factors above 1: a logarithm now and then instead of one for each.
+class LogProduct {
+ public:
+  void multiply(double factor) {
+    product_ *= factor;
+    if (product_ > 1e150) log_ += std::log(product_), product_ = 1;
+  }
+  double log() const { return log_ + std::log(product_); }
+
+ private:
+  double product_ = 1, log_ = 0;
+};
+
+/// The tie's residuals: what d has across the shared direction, r = B_tie^T d / sigma [Lim2021, structural constraint], and
+/// the distances of its points across the line, r = B^T (p - m) / sigma.
+void addTie(const LineTie& tie, const Eigen::Vector3d& m, const Eigen::Vector3d& d, Normal& normal) {
   const Eigen::Matrix<double, 3, 2> B = tangentBasis(d);
-  const double width2 = loss_width * loss_width;
+  const auto add = [&](const Eigen::Vector2d& r, const Eigen::Matrix<double, 2, 4>& J) {
+    normal.cost += 0.5 * r.squaredNorm();
+    normal.H_tie += J.transpose() * J;
+    normal.b += J.transpose() * r;
+  };
+  const Eigen::Matrix<double, 3, 2> across = tangentBasis(tie.direction_w) / tie.sigma_rad;
+  Eigen::Matrix<double, 2, 4> J;
+  J << Eigen::Matrix2d::Zero(), across.transpose() * B;
+  add(across.transpose() * d, J);
+  for (const PointOnLine& point : tie.points) {
+    const Eigen::Vector3d arm = point.p_w - m;
+    J << -Eigen::Matrix2d::Identity(), -d.dot(arm) * Eigen::Matrix2d::Identity();
+    add(B.transpose() * arm / point.sigma_m, J / point.sigma_m);
+  }
+}
+
+Normal normalEquations(const FitData& data, const Eigen::Vector3d& m, const Eigen::Vector3d& d) {
+  const Eigen::Matrix<double, 3, 2> B = tangentBasis(d);
+  const double width2 = data.loss_width * data.loss_width;
   Normal normal;
-  for (const FitView& v : views) {
+  LogProduct loss;
+  if (data.tie) addTie(*data.tie, m, d, normal);
+  for (const FitView& v : data.views) {
     const Eigen::Vector3d arm = m - v.p_w_c, l = v.R_c_w * arm.cross(d);
     const double size = std::max(l.head<2>().norm(), 1e-12);
     Eigen::Matrix<double, 3, 4> d_l;
@@ -64,15 +106,17 @@ Normal normalEquations(const std::vector<FitView>& views, const Eigen::Vector3d&
       J.row(k) = v.weight / size * (v.ends[k] - distance * lateral).transpose() * d_l;
     }
     const double s = r.squaredNorm() / width2, w = 1 / (1 + s);  // Cauchy
-    normal.cost += 0.5 * width2 * std::log1p(s);
+    loss.multiply(1 + s);
     normal.H += w * J.transpose() * J;
     normal.b += w * J.transpose() * r;
   }
+  normal.cost += 0.5 * width2 * loss.log();
   return normal;
 }
 
-/// Start from all observation planes [Lim2021, eq. make_plane]: the direction is what all normals are perpendicular to.
-bool intersectPlanes(const std::vector<FitView>& views, LineEstimate& line) {
+/// Start from all observation planes [Lim2021, eq. make_plane]: the direction is what all normals are perpendicular to, or
+/// the tie's.
+bool intersectPlanes(const std::vector<FitView>& views, const std::optional<LineTie>& tie, LineEstimate& line) {
   Eigen::Matrix3d normals = Eigen::Matrix3d::Zero();
   Eigen::Vector3d b = Eigen::Vector3d::Zero();
   for (const FitView& v : views) {
@@ -83,9 +127,11 @@ bool intersectPlanes(const std::vector<FitView>& views, LineEstimate& line) {
     b += n_w * n_w.dot(v.p_w_c);
   }
   const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(normals);
-  if (solver.eigenvalues()[1] < 1e-10) return false;
-  line.direction_w = solver.eigenvectors().col(0);
+  if (!tie && solver.eigenvalues()[1] < 1e-10) return false;
+  line.direction_w = tie ? tie->direction_w : Eigen::Vector3d(solver.eigenvectors().col(0));
   const Eigen::Matrix3d along = line.direction_w * line.direction_w.transpose();
+  if (tie)
+    for (const PointOnLine& p : tie->points) normals += Eigen::Matrix3d::Identity() - along, b += p.p_w - along * p.p_w;
   line.middle_w = (normals + along).ldlt().solve(b + along * views.front().p_w_c);
   return line.middle_w.allFinite();
 }
@@ -115,18 +161,18 @@ bool centre(const std::vector<FitView>& views, LineEstimate& line, double& dista
 }
 
 /// Levenberg-Marquardt; returns the normal equations where it ended.
-Normal refine(const std::vector<FitView>& views, double loss_width, LineEstimate& line) {
-  Normal now = normalEquations(views, line.middle_w, line.direction_w, loss_width);
+Normal refine(const FitData& data, LineEstimate& line) {
+  Normal now = normalEquations(data, line.middle_w, line.direction_w);
   double damping = 1e-4;
   for (int i = 0; i < 15; ++i) {
-    Eigen::Matrix4d H = now.H;
+    Eigen::Matrix4d H = now.H + now.H_tie;
     H.diagonal() *= 1 + damping;
-    H.diagonal().array() += 1e-12 * now.H.trace();
+    H.diagonal().array() += 1e-12 * H.trace();
     const Eigen::Vector4d step = -H.ldlt().solve(now.b);
     const Eigen::Matrix<double, 3, 2> B = tangentBasis(line.direction_w);
     const Eigen::Vector3d m = line.middle_w + B * step.head<2>();
     const Eigen::Vector3d d = (line.direction_w + B * step.tail<2>()).normalized();
-    const Normal next = m.allFinite() && d.allFinite() ? normalEquations(views, m, d, loss_width) : Normal{};
+    const Normal next = m.allFinite() && d.allFinite() ? normalEquations(data, m, d) : Normal{};
     if (m.allFinite() && d.allFinite() && next.cost < now.cost) {
       const bool converged = now.cost - next.cost < 1e-6 * now.cost;
       line.middle_w = m, line.direction_w = d;
@@ -141,11 +187,11 @@ Normal refine(const std::vector<FitView>& views, double loss_width, LineEstimate
   return now;
 }
 
-Eigen::Matrix4d covarianceOf(const Normal& normal, double scale_m) {
+Eigen::Matrix4d covarianceOf(const Eigen::Matrix4d& information, double scale_m) {
   // A unit of metres that makes positions as large as directions, and a floor instead of an inverse that fails.
   Eigen::Vector4d unit;
   unit << scale_m, scale_m, 1, 1;
-  const Eigen::Matrix4d H = unit.asDiagonal() * normal.H * unit.asDiagonal();
+  const Eigen::Matrix4d H = unit.asDiagonal() * information * unit.asDiagonal();
   const Eigen::SelfAdjointEigenSolver<Eigen::Matrix4d> solver(H);
   const Eigen::Vector4d variance = solver.eigenvalues().cwiseMax(1e-6).cwiseInverse();
   return unit.asDiagonal() * (solver.eigenvectors() * variance.asDiagonal() * solver.eigenvectors().transpose()) *
@@ -177,9 +223,9 @@ double LineEstimate::sigmaPosition(double along_m) const {
 
 bool viewStretch(const KeyframeCameras& cameras, const LineEstimate& line, const LineView& view,
                  std::pair<double, double>& stretch) {
-  constexpr double kLeastSine = 0.05, kSigmas = 3;
+  constexpr double kLeastSine = 0.05, kMostSine = 0.5, kSigmas = 3;
   const Eigen::Vector3d arm = line.middle_w - cameras.T_w_c(view.keyframe).p;
-  const double least_sine = std::max(kLeastSine, kSigmas * line.sigmaDirection());
+  const double least_sine = std::clamp(kSigmas * line.sigmaDirection(), kLeastSine, kMostSine);
   const Eigen::Vector2d px[2] = {view.start_px, view.end_px};
   double places[2];
   for (int k = 0; k < 2; ++k) {
@@ -215,26 +261,28 @@ bool fitLine(const KeyframeCameras& cameras, const LineFitParams& params, LineRe
   line.known = false;
   for (LineView& v : line.views) v.inlier = true;
   for (int pass = 0; pass < 3; ++pass) {
-    const std::vector<FitView> views = fitViews(cameras, line);
+    const FitData data{fitViews(cameras, line), line.tie, params.loss_width};
+    const std::vector<FitView>& views = data.views;
     if (views.size() < 2 || keyframesOf(line) < 2) return false;
     LineEstimate candidate;
     Normal normal;
     normal.cost = std::numeric_limits<double>::infinity();
     if (had_estimate || pass > 0) {
       candidate = line.estimate;
-      normal = refine(views, params.loss_width, candidate);
+      normal = refine(data, candidate);
     }
-    if (LineEstimate other; pass == 0 && intersectPlanes(views, other)) {
-      const Normal n = refine(views, params.loss_width, other);
+    const double freedom = std::max(1.0, 2.0 * static_cast<double>(views.size()) - 4.0);
+    const bool good = 2 * normal.cost <= freedom;  // as the sigmas promise: no need for another start
+    if (LineEstimate other; pass == 0 && !good && intersectPlanes(views, line.tie, other)) {
+      const Normal n = refine(data, other);
       if (n.cost < normal.cost) candidate = other, normal = n;
     }
     if (!std::isfinite(normal.cost) || !centre(views, candidate, line.distance_m)) return false;
-    normal = normalEquations(views, candidate.middle_w, candidate.direction_w, params.loss_width);
-    const double freedom = std::max(1.0, 2.0 * static_cast<double>(views.size()) - 4.0);
+    normal = normalEquations(data, candidate.middle_w, candidate.direction_w);
     // Views further off than their sigmas say make the line less known; and they share errors that do not average out.
     const double spread = std::max(1.0, 2 * normal.cost / freedom);
     const double common = 1 + params.systematic_px * params.systematic_px * static_cast<double>(views.size());
-    candidate.covariance = covarianceOf(normal, std::max(line.distance_m, 0.1)) * spread * common;
+    candidate.covariance = covarianceOf(normal.H / (spread * common) + normal.H_tie, std::max(line.distance_m, 0.1));
     line.estimate = candidate;
     const std::vector<LineView> before = line.views;
     judgeViews(cameras, params, line);

@@ -1,12 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "LineMerging.h"
 
+#include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
 #include <numeric>
 
 #include "LineExtent.h"
 #include "SpatialIndex.h"
+#include "lintel/geometry/Rotation.h"
 #include "lintel/geometry/Segment.h"
 
 namespace lintel {
@@ -14,6 +16,7 @@ namespace lintel {
 namespace {
 
 constexpr double kCell_m = 0.3;
+constexpr double kApart = 200;  // squared standard deviations between two estimates that no view can bring together
 
 struct Candidate {
   double score = 0;
@@ -34,6 +37,22 @@ double separationPx(const LineView& a, const LineView& b) {
   if (to - from < 0.2 * std::min(length, u1 - u0) || u1 - u0 < 1) return -1;
   const auto across = [&](double u) { return v0 + (v1 - v0) * (u - u0) / (u1 - u0); };
   return 0.5 * std::abs(across(from) + across(to));
+}
+
+/// How far apart two lines are in space, squared, in standard deviations: their positions and directions across `a` where
+/// that was seen.
+double apartness(const LineEstimate& a, const LineEstimate& b) {
+  const Eigen::Matrix<double, 3, 2> B = tangentBasis(a.direction_w);
+  const double along = (a.middle_w - b.middle_w).dot(a.direction_w) / b.direction_w.dot(a.direction_w);
+  const Eigen::Vector3d nearest = b.middle_w + along * b.direction_w;
+  const Eigen::Vector3d same_way = b.direction_w.dot(a.direction_w) < 0 ? -b.direction_w : b.direction_w;
+  Eigen::Vector4d difference;
+  difference << B.transpose() * (nearest - a.middle_w), B.transpose() * same_way;
+  const Eigen::Matrix2d turn = B.transpose() * tangentBasis(b.direction_w);
+  Eigen::Matrix4d move;
+  move << turn, along * turn, Eigen::Matrix2d::Zero(), turn;
+  const Eigen::Matrix4d covariance = a.covariance + move * b.covariance * move.transpose();
+  return difference.dot(covariance.ldlt().solve(difference));
 }
 
 class LineMerger {
@@ -174,6 +193,7 @@ class LineMerger {
     const LineRecord &la = lines_[a], &lb = lines_[b];
     double score = 0;
     if (!near(a, b, score) || seenApart(la, lb)) return false;
+    if (drift_px == 0 && apartness(la.estimate, lb.estimate) > kApart) return false;
     if (drift_px > 0 && (shareKeyframes(la, lb) || !runTheSameWay(a, b) || !isUnmistakable(a, b, score) ||
                          !isUnmistakable(b, a, score)))
       return false;
@@ -183,6 +203,8 @@ class LineMerger {
     std::merge(la.views.begin(), la.views.end(), lb.views.begin(), lb.views.end(), std::back_inserter(joint.views),
                [](const LineView& x, const LineView& y) { return x.keyframe < y.keyframe; });
     if (lb.views.size() > la.views.size()) joint.estimate = lb.estimate;
+    if (!lb.tie) joint.tie.reset();  // one that knows itself is enough
+    joint.parallel = la.parallel || lb.parallel;
     LineFitParams fit = fit_;
     fit.max_error_px += drift_px;
     if (!fitLine(cameras_, fit, joint) || !explains(joint, la, lb, drift_px)) return false;

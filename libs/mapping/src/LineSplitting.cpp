@@ -35,6 +35,7 @@ int splitLines(std::vector<LineRecord>& lines) {
                                                 [&](const LineView& v) { return v.track != track; });
       LineRecord alone;
       alone.id = next++;
+      alone.parallel = line.parallel;
       alone.views.assign(others, line.views.end());
       line.views.erase(others, line.views.end());
       separate.push_back(std::move(alone));

@@ -23,6 +23,7 @@ LineRecord recordOf(const RetiredLine& retired) {
   LineRecord line;
   line.id = retired.id;
   line.known = retired.triangulated && !retired.degenerate;
+  line.parallel = retired.group != 0;
   if (line.known) {
     line.estimate.middle_w = retired.line_w.nearestPoint();
     line.estimate.direction_w = retired.line_w.d.normalized();
@@ -100,6 +101,7 @@ void prepareMaterial(const MapParams& params, MapMaterial& material) {
   MapFitting fitting(params, material);
   fitting.fitAll();
   fitting.merge();
+  if (params.degenerate_lines == "constrain") fitting.tie();
 }
 
 }  // namespace lintel

@@ -4,6 +4,7 @@
 #include "LineExtent.h"
 #include "LineFitting.h"
 #include "LineGroups.h"
+#include "LineJudgement.h"
 #include "lintel/mapping/MapBuilder.h"
 
 namespace lintel {
@@ -32,19 +33,18 @@ class MapDrawer {
   }
 
   std::optional<MapLine> draw(const LineRecord& line) const {
-    if (!hasEvidence(line)) return std::nullopt;
-    const auto stretch = seenStretch(cameras_, line, params_.coverage);
-    if (!stretch || stretch->second - stretch->first < params_.min_length_m) return std::nullopt;
-    MapLine result;
-    result.sigma_direction_rad = line.estimate.sigmaDirection();
-    result.sigma_distance_m =
-        std::max(line.estimate.sigmaPosition(stretch->first), line.estimate.sigmaPosition(stretch->second));
-    if (!(result.sigma_direction_rad <= params_.max_sigma_direction_rad) ||
-        !(result.sigma_distance_m <= std::min(params_.max_sigma_m, params_.max_relative_sigma * line.distance_m)))
+    const LineJudgement judged = judgeMapLine(params_, cameras_, line);
+    const bool wanted = judged.state == LineState::kKnown ||
+                        (judged.state == LineState::kDegenerate && params_.degenerate_lines == "use");
+    if (!wanted || !judged.stretch || judged.stretch->second - judged.stretch->first < params_.min_length_m)
       return std::nullopt;
+    MapLine result;
+    result.sigma_direction_rad = judged.sigma_direction_rad;
+    result.sigma_distance_m = judged.sigma_distance_m;
     result.id = line.id;
-    result.segment_w = segmentOf(cameras_, line, *stretch);
-    result.constrained = line.constrained;
+    result.segment_w = segmentOf(cameras_, line, *judged.stretch);
+    result.constrained = line.tie.has_value();
+    result.degenerate = result.constrained || judged.state == LineState::kDegenerate;
     for (const LineView& v : line.views)
       if (v.inlier) result.observations.push_back(observationOf(v, result.segment_w));
     result.first_t_ns = timeOf(result.observations.front().keyframe_id);
@@ -53,12 +53,6 @@ class MapDrawer {
   }
 
  private:
-  bool hasEvidence(const LineRecord& line) const {
-    if (!line.known || keyframesOf(line) < params_.min_observations || line.error_px > params_.max_error_px) return false;
-    const auto inliers = std::count_if(line.views.begin(), line.views.end(), [](const LineView& v) { return v.inlier; });
-    return static_cast<double>(inliers) >= params_.min_inlier_share * static_cast<double>(line.views.size());
-  }
-
   /// Tracks of a merged line may run the other way: start and end of the views follow the segment's.
   MapLineObservation observationOf(const LineView& view, const Segment3& segment_w) const {
     const Eigen::Matrix3d& R_c_w = cameras_.R_c_w(view.keyframe);

@@ -3,7 +3,9 @@
 
 #include "LineMerging.h"
 #include "LineSplitting.h"
+#include "LineTying.h"
 #include "PointMerging.h"
+#include "lintel/mapping/MapBuilder.h"
 
 namespace lintel {
 
@@ -25,6 +27,12 @@ int MapFitting::merge(double drift_px) {
   if (params_.merge.points) merged += mergePoints(cameras_, point_, params_.merge, material_.points);
   if (params_.merge.lines) merged += mergeLines(cameras_, line_, params_.merge, drift_px, material_.lines);
   return merged;
+}
+
+void MapFitting::tie() {
+  const std::vector<MapGroup> groups = drawMap(params_, material_).groups;
+  if (tieDegenerateLines(cameras_, line_, params_, groups, material_) > 0 && params_.merge.lines)
+    mergeLines(cameras_, line_, params_.merge, 0, material_.lines);
 }
 
 }  // namespace lintel

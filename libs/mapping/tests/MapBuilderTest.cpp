@@ -142,6 +142,37 @@ TEST_F(MapBuilderTest, LinesWithoutEvidenceAreLeftOut) {
   EXPECT_EQ(map.lines[0].id, 7u);
 }
 
+/// Five parallel lines, and a sixth that few views show badly: use | drop | constrain.
+TEST_F(MapBuilderTest, DegenerateLinesAreUsedDroppedOrConstrained) {
+  const auto parallel = [](double x, double y, double length) {
+    return Segment3{{x, y, 3}, {x + length, y + 0.3 * length, 3}};
+  };
+  for (TrackId id = 1; id <= 5; ++id)
+    update_.lines.push_back(lineOf(id, parallel(0.2 * static_cast<double>(id), 0.3 * static_cast<double>(id) - 1.2, 1)));
+  const Segment3 degenerate_w = parallel(0.2, -1.2, 0.4);
+  RetiredLine line = lineOf(9, degenerate_w, 3);
+  for (std::size_t i = 0; i < 3; ++i) line.sightings[i].end_px.y() += i % 2 ? 1 : -1;
+  line.group = 1;
+  update_.lines.push_back(line);
+  params_.max_sigma_m = 0.2;
+  params_.groups.max_angle_rad = 0.1;
+  const auto find = [&](const char* what) {
+    params_.degenerate_lines = what;
+    for (const MapLine& l : build().lines)
+      if (l.id == 9) return std::make_optional(l);
+    return std::optional<MapLine>();
+  };
+  const auto used = find("use"), dropped = find("drop"), constrained = find("constrain");
+  ASSERT_TRUE(used);
+  EXPECT_TRUE(used->degenerate && !used->constrained);
+  EXPECT_FALSE(dropped);
+  ASSERT_TRUE(constrained);
+  EXPECT_TRUE(constrained->degenerate && constrained->constrained);
+  const auto error = [&](const MapLine& l) { return lineAngle(l.segment_w.direction(), degenerate_w.direction()); };
+  EXPECT_LT(error(*constrained), 0.03);
+  EXPECT_LT(3 * error(*constrained), error(*used));
+}
+
 TEST_F(MapBuilderTest, WhatTheWindowCouldNotPlaceIsEstimatedFromAllViews) {
   RetiredLine line = lineOf(3, upright_), degenerate = lineOf(4, {{1.4, -0.7, 4}, {1.4, 0.6, 4}});
   line.triangulated = false;

@@ -107,6 +107,7 @@ void apply(const YAML::Node& root, const std::string& source, Configuration& con
   Reader reader(root, source, "");
   configuration.fields(reader);
   reader.refuseUnknown();
+  configuration.map.degenerate_lines = configuration.estimator.degeneracy.lines;  // one key for both
 }
 
 }  // namespace

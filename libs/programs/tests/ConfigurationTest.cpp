@@ -81,6 +81,14 @@ class ConfigurationTest : public testing::Test {
   std::string file_;
 };
 
+TEST_F(ConfigurationTest, WhatIsDoneWithDegenerateLinesIsDoneInTheMapToo) {
+  EXPECT_EQ(Configuration().map.degenerate_lines, Configuration().estimator.degeneracy.lines);
+  EXPECT_EQ(read("estimator: {degeneracy: {lines: use}}").map.degenerate_lines, "use");
+  Configuration configuration;
+  setOption("estimator.degeneracy.lines=drop", configuration);
+  EXPECT_EQ(configuration.map.degenerate_lines, "drop");
+}
+
 TEST_F(ConfigurationTest, SetsWhatTheFileHoldsAndNothingElse) {
   const Configuration c =
       read("estimator:\n  keyframes: 8\n  factors: {point_sigma_px: 0.75}\nmap:\n  coverage: 0.5\n");

@@ -3,6 +3,7 @@
 
 #include <Eigen/Core>
 #include <cstdint>
+#include <optional>
 #include <utility>
 #include <vector>
 
@@ -47,6 +48,19 @@ struct LineEstimate {
   double sigmaPosition(double along_m) const;  ///< worst way across, that far from the middle [m]
 };
 
+/// A point that lies on a line.
+struct PointOnLine {
+  Eigen::Vector3d p_w = Eigen::Vector3d::Zero();
+  double sigma_m = 0;  ///< across the line
+};
+
+/// What a line is held to beside its views.
+struct LineTie {
+  Eigen::Vector3d direction_w = Eigen::Vector3d::UnitX();  ///< unit, shared with others; the sign means nothing
+  double sigma_rad = 0;                                    ///< how parallel the lines are
+  std::vector<PointOnLine> points;                          ///< that lie on it
+};
+
 /// A line and all its views.
 struct LineRecord {
   TrackId id = 0;
@@ -54,8 +68,8 @@ struct LineRecord {
   LineEstimate estimate;
   double error_px = 0;    ///< mean distance of the inliers' ends from the projected line
   double distance_m = 0;  ///< from which it was seen, median
-  int group = -1;         ///< of parallel lines, -1 = none
-  bool constrained = false;
+  bool parallel = false;  ///< the window found it parallel to others to the end
+  std::optional<LineTie> tie;  ///< where its own views leave the direction or place open
   std::vector<LineView> views;
 };
 

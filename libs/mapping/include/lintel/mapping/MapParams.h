@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <string>
+
 namespace lintel {
 
 /// When landmarks are the same.
@@ -62,6 +64,9 @@ struct MapParams {
   double coverage = 0.2;              ///< a piece of a line is drawn when this share of a track's views (and two) saw it
   MergeParams merge;
   GroupParams groups;
+  /// use: drawn as they are; drop: left out; constrain: tied to parallel ones and drawn where that makes them known.
+  /// No key of its own: estimator.degeneracy.lines.
+  std::string degenerate_lines = "constrain";
 
   template <class F>
   void fields(F&& field) {

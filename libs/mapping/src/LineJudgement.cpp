@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "LineJudgement.h"
+
+#include <algorithm>
+
+#include "LineExtent.h"
+
+namespace lintel {
+
+namespace {
+
+bool hasEvidence(const MapParams& params, const LineRecord& line) {
+  if (!line.known || keyframesOf(line) < params.min_observations || line.error_px > params.max_error_px) return false;
+  const auto inliers = std::count_if(line.views.begin(), line.views.end(), [](const LineView& v) { return v.inlier; });
+  return static_cast<double>(inliers) >= params.min_inlier_share * static_cast<double>(line.views.size());
+}
+
+}  // namespace
+
+LineJudgement judgeMapLine(const MapParams& params, const KeyframeCameras& cameras, const LineRecord& line) {
+  LineJudgement result;
+  if (!hasEvidence(params, line)) return result;
+  result.stretch = seenStretch(cameras, line, params.coverage);
+  const auto [from, to] = result.stretch.value_or(std::make_pair(0.0, 0.0));
+  result.sigma_direction_rad = line.estimate.sigmaDirection();
+  result.sigma_distance_m = std::max(line.estimate.sigmaPosition(from), line.estimate.sigmaPosition(to));
+  const bool known = result.sigma_direction_rad <= params.max_sigma_direction_rad &&
+                     result.sigma_distance_m <= std::min(params.max_sigma_m, params.max_relative_sigma * line.distance_m);
+  result.state = known ? LineState::kKnown : LineState::kDegenerate;
+  return result;
+}
+
+}  // namespace lintel

@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <optional>
+#include <utility>
+
+#include "KeyframeCameras.h"
+#include "lintel/mapping/MapParams.h"
+
+namespace lintel {
+
+/// What is to be thought of a line's estimate.
+enum class LineState {
+  kNoEvidence,  ///< too few views that agree
+  kDegenerate,  ///< its views leave the direction or the place open
+  kKnown,
+};
+
+struct LineJudgement {
+  LineState state = LineState::kNoEvidence;
+  std::optional<std::pair<double, double>> stretch;  ///< from where to where it was seen (LineExtent.h)
+  double sigma_direction_rad = 0, sigma_distance_m = 0;  ///< the latter at the worse end of the stretch
+};
+
+LineJudgement judgeMapLine(const MapParams& params, const KeyframeCameras& cameras, const LineRecord& line);
+
+}  // namespace lintel

@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <vector>
+
+#include "KeyframeCameras.h"
+
+namespace lintel {
+
+/// Finds points that lie on lines [METHOD, section 3: they fix the depth of degenerate lines].
+class PointsOnLines {
+ public:
+  PointsOnLines(const KeyframeCameras& cameras, const std::vector<PointRecord>& points);
+
+  /// Points that lie on a line of direction `direction_w`: on its views in nearly all keyframes that saw both, and, where
+  /// they are several, most of them on one parallel of that direction. Whether they go with the views, too, the fit says.
+  std::vector<PointOnLine> on(const LineRecord& line, const Eigen::Vector3d& direction_w) const;
+
+ private:
+  struct Sighting {
+    std::size_t point;
+    Eigen::Vector2d px;
+  };
+
+  std::vector<PointOnLine> seenOn(const LineRecord& line, const Eigen::Vector3d& direction_w) const;
+
+  const KeyframeCameras& cameras_;
+  const std::vector<PointRecord>& points_;
+  std::vector<std::vector<Sighting>> seen_;  // by keyframe id
+};
+
+}  // namespace lintel

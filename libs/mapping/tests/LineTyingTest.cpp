@@ -1,0 +1,121 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "LineTying.h"
+
+#include <gtest/gtest.h>
+
+#include "LineJudgement.h"
+#include "PointsOnLines.h"
+#include "TestMaterial.h"
+
+namespace lintel {
+namespace {
+
+using namespace test;
+
+/// Keyframes fly along x: what lies along x shows neither its direction in the plane of the flight nor its depth.
+class LineTyingTest : public testing::Test {
+ protected:
+  LineTyingTest() { params_.max_sigma_m = params_.max_relative_sigma = 0.1; }
+
+  /// The only line of the material, fitted with the group's direction.
+  LineRecord tied(LineRecord line, const Eigen::Vector3d& direction_w) {
+    line.parallel = true;
+    fitLine(cameras_, fit_, line);
+    MapGroup group;
+    group.direction_w = direction_w.normalized();
+    group.spread_rad = 0.01;
+    material_.lines = {line};
+    tied_ = tieDegenerateLines(cameras_, fit_, params_, {group}, material_);
+    return material_.lines[0];
+  }
+  LineRecord railing() const { return lineOf(material_, 1, rail_); }
+  PointRecord pointAt(TrackId id, const Eigen::Vector3d& p_w) const {
+    PointRecord point = pointOf(material_, id, p_w);
+    point.known = true;
+    point.p_w = p_w;
+    point.sigma_distance_m = 0.02;
+    return point;
+  }
+  LineState stateOf(const LineRecord& line) const { return judgeMapLine(params_, cameras_, line).state; }
+
+  MapMaterial material_ = materialAlongX();
+  KeyframeCameras cameras_{material_};
+  LineFitParams fit_;
+  MapParams params_;
+  int tied_ = 0;
+  const Segment3 rail_{{0, 0.5, 4}, {2, 0.5, 4}}, slant_{{0, 0.5, 4}, {2, 0.9, 4.6}};
+};
+
+TEST_F(LineTyingTest, ALineNearlyAlongTheFlightTakesItsGroupsDirection) {
+  params_.max_sigma_m = params_.max_relative_sigma = 0.3;
+  const Segment3 nearly{{0, 0.5, 4}, {2, 0.56, 4}};
+  LineRecord free = lineOf(material_, 1, nearly);
+  ASSERT_TRUE(fitLine(cameras_, fit_, free));
+  ASSERT_EQ(stateOf(free), LineState::kDegenerate);
+  const LineRecord line = tied(lineOf(material_, 1, nearly), nearly.direction());
+  ASSERT_EQ(tied_, 1);
+  EXPECT_LT(lineAngle(line.estimate.direction_w, nearly.direction()), 1e-6);
+  EXPECT_LT(line.estimate.sigmaDirection(), 0.0101) << "that of the group";
+  EXPECT_GT(free.estimate.sigmaDirection(), 0.05);
+}
+
+TEST_F(LineTyingTest, WhereNothingShowsTheDepthItStaysOpen) {
+  const LineRecord line = tied(railing(), {1, 0, 0});
+  EXPECT_NE(stateOf(line), LineState::kKnown) << "a direction is no place";
+}
+
+TEST_F(LineTyingTest, PointsOnItGiveItsDepth) {
+  material_.points = {pointAt(1, {0.7, 0.5, 4}), pointAt(2, {1.6, 0.5, 4})};
+  const LineRecord line = tied(railing(), {1, 0, 0});
+  ASSERT_EQ(tied_, 1);
+  EXPECT_EQ(line.tie->points.size(), 2u);
+  EXPECT_LT((line.estimate.middle_w - rail_.start).cross(rail_.direction()).norm(), 0.01);
+  EXPECT_EQ(stateOf(line), LineState::kKnown);
+  EXPECT_LT(line.estimate.sigmaPosition(0), 0.03);
+}
+
+TEST_F(LineTyingTest, APointBesideTheLineDoesNotCount) {
+  material_.points = {pointAt(1, {0.7, 0.53, 4}), pointAt(2, {2.4, 0.5, 4})};  // three pixels across; beyond the end
+  EXPECT_TRUE(PointsOnLines(cameras_, material_.points).on(railing(), {1, 0, 0}).empty());
+}
+
+TEST_F(LineTyingTest, OfPointsAtDifferentDepthsTheMostThatAgreeCount) {
+  // in the plane of flight and line, where whatever is seen on the line stays on it
+  const auto inPlane = [&](double x, double depth) { return Eigen::Vector3d(x, 0.5 / 4 * depth, depth); };
+  material_.points = {pointAt(1, inPlane(0.7, 4)), pointAt(2, inPlane(1.2, 5)), pointAt(3, inPlane(1.6, 4))};
+  const LineRecord line = tied(railing(), {1, 0, 0});
+  ASSERT_EQ(tied_, 1);
+  EXPECT_EQ(line.tie->points.size(), 2u);
+  EXPECT_LT((line.estimate.middle_w - rail_.start).cross(rail_.direction()).norm(), 0.02);
+}
+
+TEST_F(LineTyingTest, ALineThatIsNotParallelIsNotBent) {
+  // degenerate by the gate, but its views show that it is none of the group
+  params_.max_sigma_direction_rad = 1e-6;
+  const LineRecord free = [&] {
+    LineRecord line = lineOf(material_, 1, slant_);
+    fitLine(cameras_, fit_, line);
+    return line;
+  }();
+  const LineRecord line = tied(lineOf(material_, 1, slant_), {1, 0, 0});
+  EXPECT_EQ(tied_, 0);
+  EXPECT_FALSE(line.tie);
+  EXPECT_EQ(line.estimate.direction_w, free.estimate.direction_w);
+}
+
+TEST_F(LineTyingTest, WhatTheWindowDidNotFindParallelIsLeftAlone) {
+  LineRecord line = railing();
+  fitLine(cameras_, fit_, line);
+  MapGroup group;
+  material_.lines = {line};
+  EXPECT_EQ(tieDegenerateLines(cameras_, fit_, params_, {group}, material_), 0);
+}
+
+TEST_F(LineTyingTest, ALineThatKnowsItselfIsLeftAlone) {
+  const LineRecord line = tied(lineOf(material_, 1, {{0.8, -0.7, 4}, {0.9, 0.6, 4.1}}), {0, 1, 0});
+  EXPECT_EQ(tied_, 0);
+  EXPECT_FALSE(line.tie);
+}
+
+}  // namespace
+}  // namespace lintel
