@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "AdaptiveWeights.h"
 #include "FailureDetection.h"
 #include "Initializer.h"
 #include "KeyframeSelection.h"
@@ -73,6 +74,7 @@ class Estimator::Impl {
 
   Rig rig_;
   EstimatorParams params_;
+  const FactorParams configured_ = params_.factors;
   ImuNoise noise_;
   Initializer initializer_;
   SlidingWindow window_;
@@ -207,6 +209,7 @@ void Estimator::Impl::solve(WindowUpdate& update) {
   factors.addPoints();
   factors.addLines(params_.degeneracy);
   update.iterations = solveWindow(window_, factors.factors(), params_.calibration, params_.max_iterations).iterations;
+  if (params_.factors.adaptive_weights) adaptSigmas(residualScales(window_, factors.factors()), configured_, params_.factors);
   rejectOutliers(window_, params_.landmarks);
   for (auto& [id, track] : window_.lines)
     if (entersProblem(track, params_.degeneracy)) updateLineUncertainty(window_, params_, track);

@@ -11,6 +11,7 @@ struct FactorParams {
   double point_loss_width = 1.5;      ///< Cauchy width, in standard deviations
   double line_sigma_px = 1.0;         ///< scales LineObservation::sigma_px
   double line_loss_width = 1.5;       ///< Cauchy width, in standard deviations
+  bool adaptive_weights = false;      ///< sigmas of points and lines follow their residuals, within twice and half
   double gyro_noise_scale = 1.0;      ///< of the rig's noise density: calibrated densities omit vibration
   double accel_noise_scale = 1.0;
   double gyro_walk_scale = 1.0;
@@ -22,6 +23,7 @@ struct FactorParams {
     field("point_loss_width", point_loss_width);
     field("line_sigma_px", line_sigma_px);
     field("line_loss_width", line_loss_width);
+    field("adaptive_weights", adaptive_weights);
     field("gyro_noise_scale", gyro_noise_scale);
     field("accel_noise_scale", accel_noise_scale);
     field("gyro_walk_scale", gyro_walk_scale);
