@@ -21,6 +21,7 @@ struct RefinedLine {
 struct EdgeSides {
   float dark = 0, bright = 0;
   float step() const { return bright - dark; }
+  float mean() const { return 0.5f * (dark + bright); }
 };
 
 /// Lays segments on the maximum of the image gradient: the position comes from this frame's edge alone, so that small

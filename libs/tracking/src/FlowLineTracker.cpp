@@ -16,8 +16,8 @@ constexpr double kNoise_px = 0.35;           ///< of an end across the line, fro
 constexpr double kSureDepth_px = 1.0;        ///< depths that say less are not asked
 constexpr double kFade = 0.8;                ///< of a drift, per frame
 constexpr double kMaxDrift_px = 4;           ///< a line that drifts further follows another edge
-constexpr double kJump_px = 2;               ///< so far from where it was expected a line must look as before
-constexpr float kSideTolerance = 0.5f;       ///< of the grey levels beside it, in steps of its edge
+constexpr double kJump_px = 2.5;               ///< so far from where it was expected a line must look as before
+constexpr float kSideTolerance = 0.5f;       ///< of the mean grey level beside it, in steps of its edge
 constexpr float kLeastStep = 8;              ///< grey levels
 constexpr double kSame_px = 1.0;             ///< one edge as seen twice in the same image
 
@@ -106,10 +106,10 @@ std::vector<ImageLine> FlowLineTracker::mergeDetections(const ImagePyramid& pyra
 
 namespace {
 
-/// Whether an edge may be the one with these grey levels beside it: light changes them both a little.
+/// Whether an edge may be the one with these grey levels beside it. Blur brings both sides nearer to each other, and their
+/// mean stays; the next step of a staircase has another mean.
 bool maybeSame(const EdgeSides& now, const EdgeSides& before) {
-  const float tolerance = std::max(kLeastStep, kSideTolerance * before.step());
-  return std::abs(now.dark - before.dark) < tolerance && std::abs(now.bright - before.bright) < tolerance;
+  return std::abs(now.mean() - before.mean()) < std::max(kLeastStep, kSideTolerance * before.step());
 }
 
 }  // namespace

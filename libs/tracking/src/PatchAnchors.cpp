@@ -92,7 +92,7 @@ bool PatchAnchors::alignPatch(const Anchor& anchor, const cv::Mat& image, Warp& 
     const Eigen::Vector2f shift = warp.A * step.head<2>();
     warp.place -= cv::Point2f(shift.x(), shift.y());
     if (!(std::hypot(warp.place.x - start.x, warp.place.y - start.y) < kMaxShift_px) || !(warp.A.determinant() > 0.1f)) return false;
-    if (shift.norm() < kConverged_px) break;
+    if (shift.norm() < kConverged_px) return seen.dot(anchor.patch) > kLeastCorrelation;
   }
   return sample(image, warp, seen) && normalise(seen) && seen.dot(anchor.patch) > kLeastCorrelation;
 }

@@ -14,6 +14,7 @@ namespace {
 
 constexpr double kMinEigenvalue = 1e-4;  ///< OpenCV's default: patches without texture fail
 constexpr int kSteadyLevels = 2;         ///< for points whose motion is known
+constexpr int kProven = 5;               ///< frames after which a point that looks like its patch needs no way back
 constexpr int kBackwardLevels = 1;       ///< the way back starts at the answer
 
 bool inside(const PinholeRadtan& camera, const cv::Point2f& p, double border) {
@@ -74,17 +75,22 @@ void PointTracker::followFrom(const ImagePyramid& pyramid, const std::vector<std
   std::vector<unsigned char> found;
   cv::calcOpticalFlowPyrLK(pyramid.previous(), pyramid.current(), from, to, found, cv::noArray(), window(),
                            std::min(levels, pyramid.levels()) - 1, criteria(), cv::OPTFLOW_USE_INITIAL_FLOW, kMinEigenvalue);
-  std::vector<std::size_t> unsure;
+  const auto align = [&](std::size_t i) { return anchors_.align(points_[i].id, pyramid.image(), followed.px[i]); };
+  std::vector<std::size_t> unsure, young;
   for (std::size_t k = 0; k < indices.size(); ++k) {
     const std::size_t i = indices[k];
     followed.px[i] = to[k];
     followed.fate[i] = Fate::kLost;
     if (!found[k] || !inside(camera_, to[k], params_.border_px)) continue;
-    const AnchorVerdict verdict = anchors_.align(points_[i].id, pyramid.image(), followed.px[i]);
+    const bool is_young = points_[i].track_length < kProven;
+    const AnchorVerdict verdict = is_young ? AnchorVerdict::kUnsure : align(i);
+    if (is_young) young.push_back(i);
     if (verdict == AnchorVerdict::kHeld) followed.fate[i] = Fate::kAlive;
     if (verdict == AnchorVerdict::kUnsure) unsure.push_back(i);
   }
   followBack(pyramid, unsure, followed);
+  for (const std::size_t i : young)
+    if (followed.fate[i] == Fate::kAlive && align(i) == AnchorVerdict::kLost) followed.fate[i] = Fate::kLost;
 }
 
 void PointTracker::followBack(const ImagePyramid& pyramid, const std::vector<std::size_t>& indices, Followed& followed) const {
