@@ -5,6 +5,7 @@
 #include <ceres/ordered_groups.h>
 #include <ceres/solver.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
@@ -37,6 +38,11 @@ const std::shared_ptr<const StateManifold>& correctionManifold() {
 }
 StateManifold* lineManifold() {
   static LineManifold manifold;
+  return &manifold;
+}
+
+StateManifold* directionManifold() {
+  static DirectionManifold manifold;
   return &manifold;
 }
 
@@ -80,9 +86,10 @@ class ProgressCallback : public ceres::IterationCallback {
 
 BatchProblem::BatchProblem(const Rig& calibrated, const EstimatorParams& estimator, MapMaterial& material,
                            const std::vector<bool>& use_point, const std::vector<bool>& use_line,
-                           std::size_t most_views)
-    : calibrated_(calibrated), estimator_(estimator), material_(material), most_views_(most_views),
+                           std::size_t most_views, const std::vector<ParallelLines>& groups)
+    : calibrated_(calibrated), estimator_(estimator), material_(material), most_views_(most_views), groups_(groups),
       point_loss_(estimator.factors.point_loss_width), line_loss_(estimator.factors.line_loss_width),
+      structural_loss_(estimator.degeneracy.structural_loss_width),
       problem_(std::make_unique<ceres::Problem>(problemOptions())) {
   for (std::size_t i = 0; i < material.points.size(); ++i)
     if (use_point[i]) points_.push_back(i);
@@ -98,6 +105,7 @@ BatchProblem::BatchProblem(const Rig& calibrated, const EstimatorParams& estimat
   addImu();
   addPoints();
   addLines();
+  addGroups();
 }
 
 Eigen::Vector3d BatchProblem::originOf(FrameId keyframe) const {
@@ -109,7 +117,8 @@ void BatchProblem::placeBlocks() {
   lines_at_ = points_.size() * kPointSize;
   extrinsics_at_ = lines_at_ + lines_.size() * kLineSize;
   correction_at_ = extrinsics_at_ + kPoseSize;
-  keyframes_at_ = correction_at_ + kCorrectionSize;
+  directions_at_ = correction_at_ + kCorrectionSize;
+  keyframes_at_ = directions_at_ + groups_.size() * kDirectionSize;
   values_.resize(keyframes_at_ + material_.keyframes.size() * (kPoseSize + kMotionSize));
 
   for (std::size_t i = 0; i < points_.size(); ++i) {
@@ -132,6 +141,10 @@ void BatchProblem::placeBlocks() {
   Eigen::Map<CorrectionBlock>(at(correction_at_)) =
       correctionOf(material_.rig.camera, calibrated_.camera, material_.time_offset_s);
   problem_->AddParameterBlock(at(correction_at_), kCorrectionSize);
+  for (std::size_t g = 0; g < groups_.size(); ++g) {
+    Eigen::Map<DirectionBlock>(at(directions_at_ + g * kDirectionSize)) = groups_[g].direction_w;
+    problem_->AddParameterBlock(at(directions_at_ + g * kDirectionSize), kDirectionSize, directionManifold());
+  }
   for (std::size_t k = 0; k < material_.keyframes.size(); ++k) {
     const RetiredKeyframe& keyframe = material_.keyframes[k];
     Eigen::Map<PoseBlock>(at(poseAt(k))) = toBlock(keyframe.T_w_b);
@@ -247,12 +260,25 @@ void BatchProblem::addLines() {
   }
 }
 
+void BatchProblem::addGroups() {
+  for (std::size_t g = 0; g < groups_.size(); ++g)
+    for (const std::size_t line : groups_[g].lines) {
+      const auto place = std::lower_bound(lines_.begin(), lines_.end(), line);
+      if (place == lines_.end() || *place != line) continue;
+      const auto i = static_cast<std::size_t>(place - lines_.begin());
+      structural_factors_.emplace_back(1 / groups_[g].sigma_rad);
+      problem_->AddResidualBlock(&structural_factors_.back(), &structural_loss_, at(lines_at_ + i * kLineSize),
+                                 at(directions_at_ + g * kDirectionSize));
+    }
+}
+
 BatchProblem::Summary BatchProblem::solve(int max_iterations, double tolerance, const std::function<void(int)>& progress) {
   auto ordering = std::make_shared<ceres::ParameterBlockOrdering>();
   for (std::size_t i = 0; i < points_.size(); ++i) ordering->AddElementToGroup(at(points_at_ + i * kPointSize), 0);
   for (std::size_t i = 0; i < lines_.size(); ++i) ordering->AddElementToGroup(at(lines_at_ + i * kLineSize), 0);
   ordering->AddElementToGroup(at(extrinsics_at_), 1);
   ordering->AddElementToGroup(at(correction_at_), 1);
+  for (std::size_t g = 0; g < groups_.size(); ++g) ordering->AddElementToGroup(at(directions_at_ + g * kDirectionSize), 1);
   for (std::size_t k = 0; k < material_.keyframes.size(); ++k) {
     ordering->AddElementToGroup(at(poseAt(k)), 1);
     ordering->AddElementToGroup(at(motionAt(k)), 1);

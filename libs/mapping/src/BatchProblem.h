@@ -14,19 +14,29 @@
 #include "lintel/factors/Manifolds.h"
 #include "lintel/factors/PointFactor.h"
 #include "lintel/factors/PriorFactors.h"
+#include "lintel/factors/StructuralFactor.h"
 #include "lintel/mapping/BatchRefinement.h"
 
 namespace lintel {
 
+/// Lines that share a direction: places in the material.
+struct ParallelLines {
+  Eigen::Vector3d direction_w = Eigen::Vector3d::UnitX();
+  double sigma_rad = 0;  ///< how parallel they are
+  std::vector<std::size_t> lines;
+};
+
 /// One adjustment as a Ceres problem: makes blocks and residuals from a material, solves, writes back.
 ///
-/// Ceres orders blocks by their addresses: all lie in one array (points, lines, calibration, keyframes in their order),
+/// Ceres orders blocks by their addresses: all lie in one array (points, lines, calibration, directions, keyframes in their order),
 /// so that the same sums are made in the same order every run.
 class BatchProblem {
  public:
   /// `use_point`, `use_line`: which landmarks take part, by place in the material; `most_views` of each have residuals.
+  /// `groups` of parallel lines share a direction each.
   BatchProblem(const Rig& calibrated, const EstimatorParams& estimator, MapMaterial& material,
-               const std::vector<bool>& use_point, const std::vector<bool>& use_line, std::size_t most_views);
+               const std::vector<bool>& use_point, const std::vector<bool>& use_line, std::size_t most_views,
+               const std::vector<ParallelLines>& groups);
 
   struct Summary {
     bool usable = false;
@@ -50,6 +60,7 @@ class BatchProblem {
   void addImu();
   void addPoints();
   void addLines();
+  void addGroups();
   Eigen::Vector3d originOf(FrameId keyframe) const;
 
   std::size_t poseAt(std::size_t k) const { return keyframes_at_ + k * (kPoseSize + kMotionSize); }
@@ -60,13 +71,16 @@ class BatchProblem {
   MapMaterial& material_;
   std::size_t most_views_;
   std::vector<std::size_t> points_, lines_;     // places in the material
+  std::vector<ParallelLines> groups_;
   std::vector<std::int64_t> keyframe_places_;   // by id
   std::vector<double> values_;
-  std::size_t points_at_ = 0, lines_at_ = 0, extrinsics_at_ = 0, correction_at_ = 0, keyframes_at_ = 0;
+  std::size_t points_at_ = 0, lines_at_ = 0, extrinsics_at_ = 0, correction_at_ = 0, directions_at_ = 0,
+              keyframes_at_ = 0;
 
-  ceres::CauchyLoss point_loss_, line_loss_;
+  ceres::CauchyLoss point_loss_, line_loss_, structural_loss_;
   std::deque<PointFactor> point_factors_;
   std::deque<LineFactor> line_factors_;
+  std::deque<SharedDirectionFactor> structural_factors_;
   std::vector<std::pair<std::size_t, std::unique_ptr<ImuFactor>>> imu_factors_;  // with the later keyframe's place
   std::vector<std::unique_ptr<ceres::CostFunction>> priors_;
   std::unique_ptr<ceres::Problem> problem_;

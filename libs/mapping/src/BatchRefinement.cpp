@@ -7,6 +7,7 @@
 
 #include "BatchProblem.h"
 #include "LineExtent.h"
+#include "LineGroups.h"
 #include "MapFitting.h"
 #include "lintel/mapping/MapBuilder.h"
 #include "lintel/geometry/Rotation.h"
@@ -14,6 +15,25 @@
 namespace lintel {
 
 namespace {
+
+/// The groups of the lines that would be drawn now.
+std::vector<ParallelLines> parallelLines(const MapParams& params, const MapMaterial& material) {
+  constexpr double kLeastSpread_rad = 0.005;
+  const LineMap map = drawMap(params, material);
+  const std::vector<bool> certain = certainGroups(map);
+  std::vector<ParallelLines> groups;
+  for (const MapGroup& group : map.groups)
+    groups.push_back({group.direction_w, std::max(kLeastSpread_rad, group.spread_rad), {}});
+  auto drawn = map.lines.begin();
+  for (std::size_t i = 0; i < material.lines.size() && drawn != map.lines.end(); ++i) {
+    if (material.lines[i].id != drawn->id) continue;
+    const auto group = static_cast<std::size_t>(drawn->group);
+    if (drawn->group >= 0 && certain[group]) groups[group].lines.push_back(i);
+    ++drawn;
+  }
+  groups.erase(std::remove_if(groups.begin(), groups.end(), [](const ParallelLines& g) { return g.lines.empty(); }), groups.end());
+  return groups;
+}
 
 /// Every n-th point track has no part in the adjustment and judges it.
 bool isHeldOut(const PointRecord& point, double share) {
@@ -136,7 +156,9 @@ RefinementReport BatchRefinement::adjust(MapMaterial& material, const Refinement
                          l.estimate.sigmaDirection() <= params_.line_max_sigma_direction_rad &&
                          l.estimate.sigmaPosition(0) <= params_.line_max_relative_sigma * l.distance_m);
     BatchProblem problem(calibrated_, estimator_, material, use_point, use_line,
-                         static_cast<std::size_t>(std::max(0, params_.max_views)));
+                         static_cast<std::size_t>(std::max(0, params_.max_views)),
+                         round > 0 && params_.groups ? parallelLines(map_, material)
+                                                                           : std::vector<ParallelLines>());
     if (round == 0) report.imu_before = problem.imuError();
     // landmarks are chosen and judged anew after every round but the last: those need not converge
     const auto summary = problem.solve(params_.max_iterations, last ? 1e-4 : 1e-2, [&](int iteration) {

@@ -114,6 +114,19 @@ void nameGroups(std::vector<MapGroup>& groups) {
 
 }  // namespace
 
+std::vector<bool> certainGroups(const LineMap& map) {
+  constexpr double kLeastShare = 0.10;
+  std::vector<double> lengths(map.groups.size(), 0.0);
+  double total = 0;
+  for (const MapLine& line : map.lines) {
+    total += line.segment_w.length();
+    if (line.group >= 0) lengths[static_cast<std::size_t>(line.group)] += line.segment_w.length();
+  }
+  std::vector<bool> certain;
+  for (const double length : lengths) certain.push_back(length >= kLeastShare * total);
+  return certain;
+}
+
 std::vector<MapGroup> findGroups(const GroupParams& params, std::vector<MapLine>& lines) {
   std::vector<MapGroup> groups = GroupFinder(params, lines).run();
   nameGroups(groups);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "MapFitting.h"
 
+#include "LineGroups.h"
 #include "LineMerging.h"
 #include "LineSplitting.h"
 #include "LineTying.h"
@@ -30,7 +31,11 @@ int MapFitting::merge(double drift_px) {
 }
 
 void MapFitting::tie() {
-  const std::vector<MapGroup> groups = drawMap(params_, material_).groups;
+  const LineMap map = drawMap(params_, material_);
+  const std::vector<bool> certain = certainGroups(map);
+  std::vector<MapGroup> groups;
+  for (std::size_t g = 0; g < certain.size(); ++g)
+    if (certain[g]) groups.push_back(map.groups[g]);
   if (tieDegenerateLines(cameras_, line_, params_, groups, material_) > 0 && params_.merge.lines)
     mergeLines(cameras_, line_, params_.merge, 0, material_.lines);
 }

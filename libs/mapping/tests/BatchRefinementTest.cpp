@@ -126,6 +126,20 @@ TEST_F(BatchRefinementTest, LandmarksComeOutWhereTheyAre) {
   EXPECT_GT(lines, 10);
 }
 
+TEST_F(BatchRefinementTest, LinesOfAGroupShareTheirDirection) {
+  MapMaterial free = material_;
+  params_.groups = false;
+  const RefinementReport without = refine(free);
+  params_.groups = true;
+  const RefinementReport with = refine(material_);
+  ASSERT_TRUE(with.accepted && without.accepted);
+  const LineMap map = drawMap({}, material_);
+  const auto members = std::count_if(map.lines.begin(), map.lines.end(), [](const MapLine& l) { return l.group >= 0; });
+  ASSERT_GE(members, 5);
+  EXPECT_GE(with.residuals, without.residuals + 3 * 5) << "three residuals each";
+  EXPECT_LT(error(material_), 1.05 * error(free));
+}
+
 TEST_F(BatchRefinementTest, TheSameBitsEveryTime) {
   MapMaterial other = material_;
   refine(material_);

@@ -45,6 +45,15 @@ TEST(LineGroups, FewLinesAreNoGroup) {
   EXPECT_EQ(lines[13].group, -1);
 }
 
+TEST(LineGroups, AGroupIsCertainFromATenthOfTheLengthOn) {
+  LineMap map;
+  map.lines = linesAlong({{{1, 0, 0}, 14}, {{0, 0, 1}, 20}, {{0, 1, 0}, 12}, {{1, 0, 1}, 5}, {{1, 1, 1}, 2}, {{-1, 2, 1}, 2}});
+  map.groups = findGroups({}, map.lines);
+  ASSERT_EQ(map.groups.size(), 4u);
+  EXPECT_EQ(certainGroups(map), (std::vector<bool>{true, true, true, false})) << "5 of 55 lines are no tenth";
+  EXPECT_TRUE(certainGroups({}).empty());
+}
+
 TEST(LineGroups, NoLinesNoGroups) {
   std::vector<MapLine> none;
   EXPECT_TRUE(findGroups({}, none).empty());

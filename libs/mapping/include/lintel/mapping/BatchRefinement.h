@@ -17,6 +17,7 @@ struct RefinementParams {
   int rounds = 3;              ///< of: estimate and merge landmarks, adjust, reject outliers
   int max_iterations = 12;     ///< of a round
   bool lines = true;           ///< lines have residuals too; off: they follow the poses
+  bool groups = true;          ///< lines of a parallel group share a direction, as far as the group is parallel
   int min_views = 3;           ///< keyframes that see a landmark of the adjustment
   int max_views = 60;          ///< of a landmark that have residuals, spread over all it has; 0: all
   double line_max_sigma_direction_rad = 0.10;  ///< vaguer lines have no residuals
@@ -34,6 +35,7 @@ struct RefinementParams {
     field("rounds", rounds);
     field("max_iterations", max_iterations);
     field("lines", lines);
+    field("groups", groups);
     field("min_views", min_views);
     field("max_views", max_views);
     field("line_max_sigma_direction_rad", line_max_sigma_direction_rad);
