@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <stdexcept>
 
 #include "BatchProblem.h"
 #include "LineExtent.h"
@@ -111,7 +112,12 @@ std::string objection(const MapMaterial& after, const EstimatorParams& estimator
 
 BatchRefinement::BatchRefinement(const Rig& calibrated, const EstimatorParams& estimator, const MapParams& map,
                                  const RefinementParams& params)
-    : calibrated_(calibrated), estimator_(estimator), map_(map), params_(params) {}
+    : calibrated_(calibrated), estimator_(estimator), map_(map), params_(params) {
+  if (!(params.sigma_scale >= 0.01 && params.sigma_scale <= 100))
+    throw std::invalid_argument(text("refinement.sigma_scale is %g, must be within 0.01 and 100", params.sigma_scale));
+  estimator_.factors.point_sigma_px *= params.sigma_scale;
+  estimator_.factors.line_sigma_px *= params.sigma_scale;
+}
 
 RefinementReport BatchRefinement::refine(MapMaterial& material, const RefinementProgress& progress) const {
   RefinementReport report;

@@ -186,6 +186,13 @@ TEST_F(BatchRefinementTest, ProgressGoesFromNothingToAll) {
   EXPECT_EQ(done.back(), 1);
 }
 
+TEST_F(BatchRefinementTest, AnAbsurdScaleIsRefusedByName) {
+  for (const double scale : {0.0, -1.0, 1e9, std::nan("")}) {
+    params_.sigma_scale = scale;
+    EXPECT_THROW(refine(material_), std::invalid_argument) << scale;
+  }
+}
+
 TEST_F(BatchRefinementTest, TooLittleToRefineSaysSo) {
   MapMaterial empty;
   empty.rig = rig_;

@@ -24,7 +24,8 @@ class BackEnd {
  public:
   BackEnd(const Rig& rig, const Configuration& configuration, const OdometryObserver& observer, OdometryResult& result)
       : rig_(rig), configuration_(configuration), estimator_(rig, configuration.estimator),
-        map_(rig, configuration.map), observer_(observer), result_(result) {}
+        map_(rig, configuration.map),
+        refinement_(rig, configuration.estimator, configuration.map, configuration.refinement), observer_(observer), result_(result) {}
 
   void process(const TrackedFrame& frame) {
     OdometryStatistics& s = result_.statistics;
@@ -68,8 +69,7 @@ class BackEnd {
     MapMaterial material = map_.material();
     if (configuration_.refinement.enabled && !material.keyframes.empty()) {
       const StageClock::Scope scope(result_.statistics.refinement);
-      const BatchRefinement refinement(rig_, configuration_.estimator, configuration_.map, configuration_.refinement);
-      result_.refinement = refinement.refine(material, refining);
+      result_.refinement = refinement_.refine(material, refining);
     } else {
       const StageClock::Scope scope(result_.statistics.map_fitting);
       prepareMaterial(configuration_.map, material);
@@ -114,6 +114,7 @@ class BackEnd {
   const Configuration& configuration_;
   Estimator estimator_;
   MapBuilder map_;
+  const BatchRefinement refinement_;
   const OdometryObserver& observer_;
   OdometryResult& result_;
 };

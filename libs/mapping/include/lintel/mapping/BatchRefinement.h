@@ -18,6 +18,9 @@ struct RefinementParams {
   int max_iterations = 12;     ///< of a round
   bool lines = true;           ///< lines have residuals too; off: they follow the poses
   bool groups = true;          ///< lines of a parallel group share a direction, as far as the group is parallel
+  /// Standard deviations of points and lines against the window's, which are larger than its residuals because what it
+  /// marginalises is never linearised again.
+  double sigma_scale = 0.5;
   int min_views = 3;           ///< keyframes that see a landmark of the adjustment
   int max_views = 60;          ///< of a landmark that have residuals, spread over all it has; 0: all
   double line_max_sigma_direction_rad = 0.10;  ///< vaguer lines have no residuals
@@ -36,6 +39,7 @@ struct RefinementParams {
     field("max_iterations", max_iterations);
     field("lines", lines);
     field("groups", groups);
+    field("sigma_scale", sigma_scale);
     field("min_views", min_views);
     field("max_views", max_views);
     field("line_max_sigma_direction_rad", line_max_sigma_direction_rad);
@@ -71,7 +75,7 @@ using RefinementProgress = std::function<void(double)>;
 /// changes. Whoever calls keeps what was before when it is not accepted.
 class BatchRefinement {
  public:
-  /// `calibrated`: the rig as calibrated, before any estimate; its priors hold the calibration.
+  /// Throws std::invalid_argument, naming the parameter, when one is out of range. `calibrated`: the rig as calibrated, before any estimate; its priors hold the calibration.
   BatchRefinement(const Rig& calibrated, const EstimatorParams& estimator, const MapParams& map,
                   const RefinementParams& params);
 
