@@ -11,6 +11,7 @@ namespace {
 
 constexpr double kNothing = std::numeric_limits<double>::quiet_NaN();
 constexpr const char* kTruthColour = "#9a9a9a";
+constexpr std::size_t kMostPoints = 1000;  // of a curve through poses: a figure has fewer pixels
 constexpr std::int64_t kGap_ns = 1000000000;  // a line is interrupted where poses are farther apart
 
 double secondsBetween(std::int64_t from_ns, std::int64_t to_ns) { return 1e-9 * static_cast<double>(to_ns - from_ns); }
@@ -20,7 +21,7 @@ template <class PointOf>
 Curve curveThrough(const NamedTrajectory& trajectory, const PointOf& pointOf) {
   std::vector<PlotPoint> points;
   const StampedPoses& poses = trajectory.poses;
-  const std::size_t step = std::max<std::size_t>(1, poses.size() / 2000);
+  const std::size_t step = std::max<std::size_t>(1, (poses.size() + kMostPoints - 1) / kMostPoints);
   for (std::size_t i = 0; i < poses.size(); i += step) {
     if (i >= step && poses[i].first - poses[i - step].first > kGap_ns + static_cast<std::int64_t>(step) * kGap_ns / 10)
       points.push_back({kNothing, kNothing});
