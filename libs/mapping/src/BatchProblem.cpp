@@ -5,7 +5,6 @@
 #include <ceres/ordered_groups.h>
 #include <ceres/solver.h>
 
-#include <algorithm>
 #include <cmath>
 #include <limits>
 
@@ -52,23 +51,6 @@ CorrectionBlock correctionOf(const PinholeRadtan& camera, const PinholeRadtan& c
       camera.k1 - calibrated.k1, camera.k2 - calibrated.k2, time_offset_s;
   return c;
 }
-
-/// Holds the length of a homogeneous point, which nothing observes. Instead of a manifold: all landmarks then have
-/// tangents of four and residuals of two, for which Ceres has code of fixed size (and hence the second, empty residual).
-class UnitLength final : public ceres::SizedCostFunction<2, kPointSize> {
- public:
-  bool Evaluate(double const* const* parameters, double* residuals, double** jacobians) const override {
-    constexpr double kWeight = 100;
-    const Eigen::Map<const PointBlock> x(parameters[0]);
-    residuals[0] = kWeight * (x.squaredNorm() - 1);
-    residuals[1] = 0;
-    if (jacobians && jacobians[0]) {
-      Eigen::Map<Eigen::Matrix<double, 2, kPointSize, Eigen::RowMajor>> J(jacobians[0]);
-      J << 2 * kWeight * x.transpose(), Eigen::RowVector4d::Zero();
-    }
-    return true;
-  }
-};
 
 class ProgressCallback : public ceres::IterationCallback {
  public:
@@ -205,71 +187,6 @@ void BatchProblem::addImu() {
     problem_->AddResidualBlock(imu_factors_.back().second.get(), nullptr, at(poseAt(k - 1)), at(motionAt(k - 1)),
                                at(poseAt(k)), at(motionAt(k)));
   }
-}
-
-namespace {
-
-/// At most `most` of the views that agree, spread evenly over all: a landmark couples every two keyframes that have a
-/// view here, and the hundredth view of a track says little that the others do not.
-template <class View>
-std::vector<const View*> spreadViews(const std::vector<View>& views, std::size_t most) {
-  std::vector<const View*> inliers, result;
-  for (const View& v : views)
-    if (v.inlier) inliers.push_back(&v);
-  if (most < 2 || inliers.size() <= most) return inliers;
-  for (std::size_t i = 0; i < most; ++i) result.push_back(inliers[i * (inliers.size() - 1) / (most - 1)]);
-  return result;
-}
-
-}  // namespace
-
-void BatchProblem::addPoints() {
-  priors_.push_back(std::make_unique<UnitLength>());
-  ceres::CostFunction* unit_length = priors_.back().get();
-  for (std::size_t i = 0; i < points_.size(); ++i) {
-    const PointRecord& point = material_.points[points_[i]];
-    const Eigen::Vector3d origin_w = originOf(point.views.front().keyframe);
-    problem_->AddResidualBlock(unit_length, nullptr, at(points_at_ + i * kPointSize));
-    for (const PointView* view : spreadViews(point.views, most_views_)) {
-      const PointView& v = *view;
-      const auto k = static_cast<std::size_t>(keyframe_places_[v.keyframe]);
-      point_factors_.emplace_back(v.px, calibrated_.camera, motionOf(material_.keyframes[k]), origin_w,
-                                  estimator_.factors.point_sigma_px);
-      problem_->AddResidualBlock(&point_factors_.back(), &point_loss_, at(poseAt(k)), at(extrinsics_at_),
-                                 at(correction_at_), at(points_at_ + i * kPointSize));
-    }
-  }
-}
-
-void BatchProblem::addLines() {
-  const double focal = calibrated_.camera.meanFocal() / estimator_.factors.line_sigma_px;
-  for (std::size_t i = 0; i < lines_.size(); ++i) {
-    const LineRecord& line = material_.lines[lines_[i]];
-    const Eigen::Vector3d origin_w = originOf(line.views.front().keyframe);
-    for (const LineView* view : spreadViews(line.views, most_views_)) {
-      const LineView& v = *view;
-      const auto k = static_cast<std::size_t>(keyframe_places_[v.keyframe]);
-      const auto seen = [&](const Eigen::Vector2d& px) {
-        return makeObservation(calibrated_.camera, calibrated_.camera.normalise(px));
-      };
-      line_factors_.emplace_back(seen(v.start_px), seen(v.end_px), motionOf(material_.keyframes[k]), origin_w,
-                                 focal / std::max(0.1, static_cast<double>(v.sigma_px)));
-      problem_->AddResidualBlock(&line_factors_.back(), &line_loss_, at(poseAt(k)), at(extrinsics_at_),
-                                 at(correction_at_), at(lines_at_ + i * kLineSize));
-    }
-  }
-}
-
-void BatchProblem::addGroups() {
-  for (std::size_t g = 0; g < groups_.size(); ++g)
-    for (const std::size_t line : groups_[g].lines) {
-      const auto place = std::lower_bound(lines_.begin(), lines_.end(), line);
-      if (place == lines_.end() || *place != line) continue;
-      const auto i = static_cast<std::size_t>(place - lines_.begin());
-      structural_factors_.emplace_back(1 / groups_[g].sigma_rad);
-      problem_->AddResidualBlock(&structural_factors_.back(), &structural_loss_, at(lines_at_ + i * kLineSize),
-                                 at(directions_at_ + g * kDirectionSize));
-    }
 }
 
 BatchProblem::Summary BatchProblem::solve(int max_iterations, double tolerance, const std::function<void(int)>& progress) {

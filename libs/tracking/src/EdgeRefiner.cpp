@@ -277,27 +277,6 @@ std::optional<RefinedLine> EdgeRefiner::refineAtLevel(const ImagePyramid& pyrami
   return refined;
 }
 
-std::optional<EdgeSides> EdgeRefiner::sides(const cv::Mat& image, const ImageLine& line) const {
-  constexpr int kSamples = 12;
-  constexpr double kBeside_px = 3;
-  EdgeSides sides;
-  int samples = 0;
-  const Eigen::Vector2d n = line.normal();
-  for (int i = 0; i < kSamples; ++i) {
-    const Eigen::Vector2d u = line.at((i + 0.5) / kSamples);
-    if (!camera_.sees(u, kBeside_px + 2)) continue;
-    const Eigen::Vector2d px = camera_.toImage(u), step = kBeside_px * (camera_.imageJacobian(u) * n).normalized();
-    const auto grey = [&](const Eigen::Vector2d& at) {
-      return static_cast<float>(image.at<unsigned char>(cvRound(at.y()), cvRound(at.x())));
-    };
-    sides.dark += grey(px - step), sides.bright += grey(px + step);
-    ++samples;
-  }
-  if (2 * samples < kSamples) return std::nullopt;
-  sides.dark /= static_cast<float>(samples), sides.bright /= static_cast<float>(samples);
-  return sides;
-}
-
 std::optional<ImageLine> EdgeRefiner::orient(const cv::Mat& derivative, const ImageLine& line) const {
   double balance = 0, strength = 0;
   const Eigen::Vector2d n = line.normal();

@@ -17,13 +17,6 @@ struct RefinedLine {
   double support = 0;   ///< share of samples along the line that see the edge
 };
 
-/// Mean grey levels beside a segment, on its darker and its brighter side.
-struct EdgeSides {
-  float dark = 0, bright = 0;
-  float step() const { return bright - dark; }
-  float mean() const { return 0.5f * (dark + bright); }
-};
-
 /// Lays segments on the maximum of the image gradient: the position comes from this frame's edge alone, so that small
 /// errors of optical flow never add up. A line's normal points to the brighter side; an edge of opposite contrast
 /// nearby (the other side of a board) is a different line and is not seen.
@@ -40,10 +33,6 @@ class EdgeRefiner {
 
   /// Turns `line` so that its normal points to the brighter side; empty when the contrast is not of one sign.
   std::optional<ImageLine> orient(const cv::Mat& derivative, const ImageLine& line) const;
-
-  /// What lies beside an edge, a few pixels off: neighbouring edges of the same direction and sign differ in it. Empty
-  /// where too little of the segment is in the image.
-  std::optional<EdgeSides> sides(const cv::Mat& image, const ImageLine& line) const;
 
  private:
   std::optional<RefinedLine> refineAtLevel(const ImagePyramid& pyramid, int level, const ImageLine& line,

@@ -17,8 +17,6 @@ constexpr double kSureDepth_px = 1.0;        ///< depths that say less are not a
 constexpr double kFade = 0.8;                ///< of a drift, per frame
 constexpr double kMaxDrift_px = 4;           ///< a line that drifts further follows another edge
 constexpr double kJump_px = 2.5;               ///< so far from where it was expected a line must look as before
-constexpr float kSideTolerance = 0.5f;       ///< of the mean grey level beside it, in steps of its edge
-constexpr float kLeastStep = 8;              ///< grey levels
 constexpr double kSame_px = 1.0;             ///< one edge as seen twice in the same image
 
 }  // namespace
@@ -104,23 +102,13 @@ std::vector<ImageLine> FlowLineTracker::mergeDetections(const ImagePyramid& pyra
   return std::move(merged.fresh);
 }
 
-namespace {
-
-/// Whether an edge may be the one with these grey levels beside it. Blur brings both sides nearer to each other, and their
-/// mean stays; the next step of a staircase has another mean.
-bool maybeSame(const EdgeSides& now, const EdgeSides& before) {
-  return std::abs(now.mean() - before.mean()) < std::max(kLeastStep, kSideTolerance * before.step());
-}
-
-}  // namespace
-
 /// Puts a track on the edge that was found for it; false when that moves or looks as another edge would.
 bool FlowLineTracker::moveTo(const ImagePyramid& pyramid, const ImageLine& line, const StepTranslation& step,
                              Track& track) const {
   const Eigen::Vector2d surprise = normalMotion(track.expected, line);
   const double surprise_px = surprise.cwiseAbs().maxCoeff();
   if (track.motion && surprise_px > kSlack * track.limit_px) return false;
-  const auto sides = refiner_.sides(pyramid.image(), line);
+  const auto sides = sidesOf(camera_, pyramid.image(), line);
   if (track.motion && surprise_px > kJump_px && sides && track.sides && !maybeSame(*sides, *track.sides)) return false;
   if (sides) track.sides = sides;
   const double noise_px = std::max(kNoise_px, track.typical_px);

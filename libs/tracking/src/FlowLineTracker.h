@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "EdgeRefiner.h"
+#include "EdgeSides.h"
 #include "LineDetector.h"
 #include "LineFlow.h"
 #include "LineMerger.h"
