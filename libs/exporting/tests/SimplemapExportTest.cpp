@@ -45,7 +45,7 @@ TEST_F(SimplemapExport, MrptReadsTheKeyframesPosesBack) {
   const auto read = reread(room);
   ASSERT_EQ(read.size(), room.keyframes.size());
   for (std::size_t i = 0; i < read.size(); ++i) {
-    const Pose T_w_b = poseOf(read.getAsPair(i).pose->getMeanVal()), wanted = room.keyframes[i].T_w_b;
+    const Pose T_w_b = poseOf(read.begin()[static_cast<std::ptrdiff_t>(i)].pose->getMeanVal()), wanted = room.keyframes[i].T_w_b;
     EXPECT_LT((T_w_b.p - wanted.p).norm(), 1e-12) << i;
     EXPECT_LT(T_w_b.q.angularDistance(wanted.q), 1e-7) << i;
   }
@@ -54,7 +54,7 @@ TEST_F(SimplemapExport, MrptReadsTheKeyframesPosesBack) {
 TEST_F(SimplemapExport, AKeyframeHoldsWhatItsCameraSawWhereItIsInTheWorld) {
   const LineMap room = sampleRoom();
   const auto read = reread(room);
-  const auto first = read.getAsPair(0);
+  const auto& first = *read.begin();
   const auto points = worldPoints(*first.sf, "points", room.keyframes[0].T_w_b);
   ASSERT_EQ(points.size(), room.points.size());  // the sample's first keyframe sees every point
   for (std::size_t i = 0; i < points.size(); ++i) EXPECT_LT((points[i] - room.points[i].p_w).norm(), 1e-5) << i;
@@ -71,8 +71,8 @@ TEST_F(SimplemapExport, LayersChooseWhatAKeyframeHolds) {
   params.layers = {MapLayer::kKeyframes, MapLayer::kLines};
   const auto read = reread(sampleRoom(), params);
   ASSERT_EQ(read.size(), 20u);
-  EXPECT_TRUE(read.getAsPair(0).sf->getObservationBySensorLabel("lines"));
-  EXPECT_FALSE(read.getAsPair(0).sf->getObservationBySensorLabel("points"));
+  EXPECT_TRUE(read.begin()->sf->getObservationBySensorLabel("lines"));
+  EXPECT_FALSE(read.begin()->sf->getObservationBySensorLabel("points"));
   EXPECT_EQ(reread({}).size(), 0u);
 }
 
