@@ -4,6 +4,7 @@
 #include <Eigen/Cholesky>
 #include <Eigen/LU>
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 namespace lintel {
@@ -35,18 +36,26 @@ bool PatchAnchors::sample(const cv::Mat& image, const Warp& warp, Patch& patch) 
   if (!(warp.place.x - reach_x >= 0 && warp.place.y - reach_y >= 0 && warp.place.x + reach_x < image.cols - 1 &&
         warp.place.y + reach_y < image.rows - 1))
     return false;
-  int k = 0;
-  for (int v = -kHalf; v <= kHalf; ++v) {
-    float x = warp.place.x + A(0, 1) * static_cast<float>(v) - A(0, 0) * kHalf;
-    float y = warp.place.y + A(1, 1) * static_cast<float>(v) - A(1, 0) * kHalf;
-    for (int u = -kHalf; u <= kHalf; ++u, x += A(0, 0), y += A(1, 0)) {
-      const int ix = static_cast<int>(x), iy = static_cast<int>(y);
-      const float fx = x - static_cast<float>(ix), fy = y - static_cast<float>(iy);
-      const unsigned char* above = image.ptr<unsigned char>(iy) + ix;
+  // Loops over a row each, so that all but the fetching of grey levels is done for four pixels at once.
+  std::array<float, kSide> x, y, fx, fy;
+  std::array<int, kSide> ix, iy, a0, a1, b0, b1;
+  for (int v = -kHalf, row = 0; v <= kHalf; ++v, row += kSide) {
+    x[0] = warp.place.x + A(0, 1) * static_cast<float>(v) - A(0, 0) * kHalf;
+    y[0] = warp.place.y + A(1, 1) * static_cast<float>(v) - A(1, 0) * kHalf;
+    for (std::size_t u = 1; u < kSide; ++u) x[u] = x[u - 1] + A(0, 0), y[u] = y[u - 1] + A(1, 0);
+    for (std::size_t u = 0; u < kSide; ++u) {
+      ix[u] = static_cast<int>(x[u]), iy[u] = static_cast<int>(y[u]);
+      fx[u] = x[u] - static_cast<float>(ix[u]), fy[u] = y[u] - static_cast<float>(iy[u]);
+    }
+    for (std::size_t u = 0; u < kSide; ++u) {
+      const unsigned char* above = image.ptr<unsigned char>(iy[u]) + ix[u];
       const unsigned char* below = above + image.step[0];
-      const float top = static_cast<float>(above[0]) + fx * static_cast<float>(above[1] - above[0]);
-      const float bottom = static_cast<float>(below[0]) + fx * static_cast<float>(below[1] - below[0]);
-      patch[k++] = top + fy * (bottom - top);
+      a0[u] = above[0], a1[u] = above[1], b0[u] = below[0], b1[u] = below[1];
+    }
+    for (std::size_t u = 0; u < kSide; ++u) {
+      const float top = static_cast<float>(a0[u]) + fx[u] * static_cast<float>(a1[u] - a0[u]);
+      const float bottom = static_cast<float>(b0[u]) + fx[u] * static_cast<float>(b1[u] - b0[u]);
+      patch[row + static_cast<int>(u)] = top + fy[u] * (bottom - top);
     }
   }
   return true;
