@@ -49,7 +49,14 @@ TEST(AdaptiveWeights, AFewResidualsSayNothing) {
   SlidingWindow window = windowAt({at(0, 0, 0), at(0.5, 0, 0)});
   seePoint(window, 1, 0, {0, 0, 4}, {3, 3});
   seePoint(window, 1, 1, {0, 0, 4});
-  const ResidualScales scales = residualScales(window, {});
+  PointTrack& track = window.points[1];
+  track.point = PointBlock(0, 0, 4, 1).normalized();
+  track.triangulated = true;
+  const FactorParams params;
+  WindowFactors factors(window, params);
+  factors.addPoint(track);
+  ASSERT_EQ(factors.factors().size(), 2u);
+  const ResidualScales scales = residualScales(window, factors.factors());
   EXPECT_EQ(scales.points, 1);
   EXPECT_EQ(scales.lines, 1);
 }

@@ -19,12 +19,11 @@ namespace {
 
 /// The groups of the lines that would be drawn now.
 std::vector<ParallelLines> parallelLines(const MapParams& params, const MapMaterial& material) {
-  constexpr double kLeastSpread_rad = 0.005;
   const LineMap map = drawMap(params, material);
   const std::vector<bool> certain = certainGroups(map);
   std::vector<ParallelLines> groups;
   for (const MapGroup& group : map.groups)
-    groups.push_back({group.direction_w, std::max(kLeastSpread_rad, group.spread_rad), {}});
+    groups.push_back({group.direction_w, sigmaOf(group), {}});
   auto drawn = map.lines.begin();
   for (std::size_t i = 0; i < material.lines.size() && drawn != map.lines.end(); ++i) {
     if (material.lines[i].id != drawn->id) continue;
@@ -161,10 +160,10 @@ RefinementReport BatchRefinement::adjust(MapMaterial& material, const Refinement
       use_line.push_back(params_.lines && l.known && keyframesOf(l) >= params_.min_views &&
                          l.estimate.sigmaDirection() <= params_.line_max_sigma_direction_rad &&
                          l.estimate.sigmaPosition(0) <= params_.line_max_relative_sigma * l.distance_m);
+    std::vector<ParallelLines> groups;
+    if (round > 0 && params_.groups) groups = parallelLines(map_, material);
     BatchProblem problem(calibrated_, estimator_, material, use_point, use_line,
-                         static_cast<std::size_t>(std::max(0, params_.max_views)),
-                         round > 0 && params_.groups ? parallelLines(map_, material)
-                                                                           : std::vector<ParallelLines>());
+                         static_cast<std::size_t>(std::max(0, params_.max_views)), groups);
     if (round == 0) report.imu_before = problem.imuError();
     // landmarks are chosen and judged anew after every round but the last: those need not converge
     const auto summary = problem.solve(params_.max_iterations, last ? 1e-4 : 1e-2, [&](int iteration) {

@@ -36,6 +36,11 @@ Segment3 segmentOf(const KeyframeCameras& cameras, const LineRecord& line, const
   return forward ? Segment3{at(stretch.first), at(stretch.second)} : Segment3{at(stretch.second), at(stretch.first)};
 }
 
+int inliersOf(const LineRecord& line) {
+  return static_cast<int>(
+      std::count_if(line.views.begin(), line.views.end(), [](const LineView& v) { return v.inlier; }));
+}
+
 int keyframesOf(const LineRecord& line) {
   std::vector<FrameId> ids;
   for (const LineView& v : line.views)

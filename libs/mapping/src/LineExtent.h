@@ -16,6 +16,9 @@ std::optional<std::pair<double, double>> seenStretch(const KeyframeCameras& came
 /// The drawn segment; start and end correspond to those of the first inlier view.
 Segment3 segmentOf(const KeyframeCameras& cameras, const LineRecord& line, const std::pair<double, double>& stretch);
 
+/// Views that agree with the estimate.
+int inliersOf(const LineRecord& line);
+
 /// Different keyframes among the inliers.
 int keyframesOf(const LineRecord& line);
 

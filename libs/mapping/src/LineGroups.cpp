@@ -114,6 +114,11 @@ void nameGroups(std::vector<MapGroup>& groups) {
 
 }  // namespace
 
+double sigmaOf(const MapGroup& group) {
+  constexpr double kLeast_rad = 0.005;
+  return std::max(kLeast_rad, group.spread_rad);
+}
+
 std::vector<bool> certainGroups(const LineMap& map) {
   constexpr double kLeastShare = 0.10;
   std::vector<double> lengths(map.groups.size(), 0.0);

@@ -11,8 +11,7 @@ namespace {
 
 bool hasEvidence(const MapParams& params, const LineRecord& line) {
   if (!line.known || keyframesOf(line) < params.min_observations || line.error_px > params.max_error_px) return false;
-  const auto inliers = std::count_if(line.views.begin(), line.views.end(), [](const LineView& v) { return v.inlier; });
-  return static_cast<double>(inliers) >= params.min_inlier_share * static_cast<double>(line.views.size());
+  return inliersOf(line) >= params.min_inlier_share * static_cast<double>(line.views.size());
 }
 
 }  // namespace

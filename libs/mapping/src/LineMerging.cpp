@@ -16,7 +16,7 @@ namespace lintel {
 namespace {
 
 constexpr double kCell_m = 0.3;
-constexpr double kApart = 200;  // squared standard deviations between two estimates that no view can bring together
+constexpr double kApart = 200;  // squared standard deviations between two estimates that hardly ever come together
 
 struct Candidate {
   double score = 0;
@@ -217,10 +217,7 @@ class LineMerger {
 
   /// Whether one line does for both: hardly any view is lost and errors stay small.
   bool explains(const LineRecord& joint, const LineRecord& a, const LineRecord& b, double drift_px) const {
-    const auto inliers = [](const LineRecord& l) {
-      return std::count_if(l.views.begin(), l.views.end(), [](const LineView& v) { return v.inlier; });
-    };
-    const auto before_a = inliers(a), before_b = inliers(b);
+    const std::ptrdiff_t before_a = inliersOf(a), before_b = inliersOf(b);
     // both must be explained, also where one has many more views than the other
     const auto kept = [&](const LineRecord& part) {
       std::ptrdiff_t n = 0;

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "LineTying.h"
 
-#include <algorithm>
-
+#include "LineExtent.h"
+#include "LineGroups.h"
 #include "LineJudgement.h"
 #include "PointsOnLines.h"
 
@@ -10,18 +10,13 @@ namespace lintel {
 
 namespace {
 
-constexpr double kLeastSpread_rad = 0.005;  // of a group: by chance its members may look more parallel than they are
 constexpr double kLeastInliers = 0.9;       // share of a line's views that must still agree
 constexpr double kMoreError_px = 0.3;       // by which they may agree less
 
-std::ptrdiff_t inliersOf(const LineRecord& line) {
-  return std::count_if(line.views.begin(), line.views.end(), [](const LineView& v) { return v.inlier; });
-}
-
 /// Whether the tied line does for the views as well as the free one.
 bool viewsAgree(const LineRecord& tied, const LineRecord& free) {
-  const auto before = static_cast<double>(free.known ? inliersOf(free) : static_cast<std::ptrdiff_t>(free.views.size()));
-  return static_cast<double>(inliersOf(tied)) >= kLeastInliers * before &&
+  const int before = free.known ? inliersOf(free) : static_cast<int>(free.views.size());
+  return inliersOf(tied) >= kLeastInliers * before &&
          tied.error_px <= (free.known ? free.error_px : 0) + kMoreError_px;
 }
 
@@ -32,7 +27,7 @@ bool tieToBest(const KeyframeCameras& cameras, const LineFitParams& fit, const s
   for (const MapGroup& group : groups) {
     LineRecord tied = line;
     tied.known = false;
-    tied.tie = LineTie{group.direction_w, std::max(kLeastSpread_rad, group.spread_rad), points.on(line, group.direction_w)};
+    tied.tie = LineTie{group.direction_w, sigmaOf(group), points.on(line, group.direction_w)};
     if (!fitLine(cameras, fit, tied) || !viewsAgree(tied, line)) continue;
     if (!best || tied.error_px < best->error_px) best = std::move(tied);
   }

@@ -43,18 +43,18 @@ class LineTyingTest : public testing::Test {
   LineFitParams fit_;
   MapParams params_;
   int tied_ = 0;
-  const Segment3 rail_{{0, 0.5, 4}, {2, 0.5, 4}}, slant_{{0, 0.5, 4}, {2, 0.9, 4.6}};
+  const Segment3 rail_{{0, 0.5, 4}, {2, 0.5, 4}}, slant_{{0, 0.5, 4}, {2, 0.9, 4.6}},
+      nearly_{{0, 0.5, 4}, {2, 0.56, 4}};
 };
 
 TEST_F(LineTyingTest, ALineNearlyAlongTheFlightTakesItsGroupsDirection) {
   params_.max_sigma_m = params_.max_relative_sigma = 0.3;
-  const Segment3 nearly{{0, 0.5, 4}, {2, 0.56, 4}};
-  LineRecord free = lineOf(material_, 1, nearly);
+  LineRecord free = lineOf(material_, 1, nearly_);
   ASSERT_TRUE(fitLine(cameras_, fit_, free));
   ASSERT_EQ(stateOf(free), LineState::kDegenerate);
-  const LineRecord line = tied(lineOf(material_, 1, nearly), nearly.direction());
+  const LineRecord line = tied(lineOf(material_, 1, nearly_), nearly_.direction());
   ASSERT_EQ(tied_, 1);
-  EXPECT_LT(lineAngle(line.estimate.direction_w, nearly.direction()), 1e-6);
+  EXPECT_LT(lineAngle(line.estimate.direction_w, nearly_.direction()), 1e-6);
   EXPECT_LT(line.estimate.sigmaDirection(), 0.0101) << "that of the group";
   EXPECT_GT(free.estimate.sigmaDirection(), 0.05);
 }
@@ -104,17 +104,25 @@ TEST_F(LineTyingTest, ALineThatIsNotParallelIsNotBent) {
 }
 
 TEST_F(LineTyingTest, WhatTheWindowDidNotFindParallelIsLeftAlone) {
-  LineRecord line = railing();
-  fitLine(cameras_, fit_, line);
+  LineRecord line = lineOf(material_, 1, nearly_);
+  ASSERT_TRUE(fitLine(cameras_, fit_, line));
   MapGroup group;
-  material_.lines = {line};
-  EXPECT_EQ(tieDegenerateLines(cameras_, fit_, params_, {group}, material_), 0);
+  group.direction_w = nearly_.direction();
+  for (const bool parallel : {false, true}) {
+    line.parallel = parallel;
+    material_.lines = {line};
+    EXPECT_EQ(tieDegenerateLines(cameras_, fit_, params_, {group}, material_), parallel);
+  }
 }
 
 TEST_F(LineTyingTest, ALineThatKnowsItselfIsLeftAlone) {
-  const LineRecord line = tied(lineOf(material_, 1, {{0.8, -0.7, 4}, {0.9, 0.6, 4.1}}), {0, 1, 0});
+  const Segment3 upright{{0.8, -0.7, 4}, {0.9, 0.6, 4.1}};
+  const LineRecord line = tied(lineOf(material_, 1, upright), upright.direction());
   EXPECT_EQ(tied_, 0);
   EXPECT_FALSE(line.tie);
+  params_.max_sigma_direction_rad = 1e-6;  // now it would not
+  tied(lineOf(material_, 1, upright), upright.direction());
+  EXPECT_EQ(tied_, 1);
 }
 
 }  // namespace
