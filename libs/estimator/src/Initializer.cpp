@@ -156,7 +156,7 @@ void Initializer::adjust(SlidingWindow& window) const {
     factors.addImu();
     factors.addPoints();
     factors.addGauge();
-    solveWindow(window, factors.factors(), frozen, 20);
+    solveWindow(window, factors.factors(), frozen, {20});
     loose.point_max_error_px = round == 0 ? 8 : params_.landmarks.point_max_error_px;
     for (auto& [id, track] : window.points)
       if (track.triangulated && reprojectionError(window, track) > loose.point_max_error_px) track.triangulated = false;

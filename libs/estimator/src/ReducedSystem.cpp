@@ -185,7 +185,6 @@ NormalEquations ReducedSystem::eliminate() {
 }
 
 bool ReducedSystem::solve(double damping) {
-  damping_ = damping;
   const std::vector<Chain> all = chains();
   Eigen::MatrixXd H = states_.H;
   Eigen::VectorXd b = states_.b;
@@ -196,6 +195,7 @@ bool ReducedSystem::solve(double damping) {
   if (llt.info() != Eigen::Success) return false;
   step_ = -llt.solve(b);
   if (!step_.allFinite()) return false;
+  states_move_ = (llt.matrixU() * step_).norm();
 
   const CameraLayout& layout = landmarks_.layout();
   Eigen::VectorXd camera_step = Eigen::VectorXd::Zero(layout.size());

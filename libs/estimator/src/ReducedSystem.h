@@ -46,6 +46,10 @@ class ReducedSystem {
   /// By how much the linear model says that the cost falls with the last solution.
   double modelDecrease() const { return model_decrease_; }
 
+  /// How far the last solution moves the states (all blocks but landmarks), in their standard deviations: Mahalanobis
+  /// distance, so that a move by m shifts no combination of states by more than m sigma.
+  double statesMove() const { return states_move_; }
+
   /// Moves the window's blocks by the last solution; takes that back.
   void apply();
   void revert();
@@ -73,7 +77,7 @@ class ReducedSystem {
   std::vector<CameraView> views_;        // at the last linearisation
   Eigen::VectorXd step_;
   std::vector<double> saved_;
-  double damping_ = 0, model_decrease_ = 0;
+  double model_decrease_ = 0, states_move_ = 0;
 };
 
 }  // namespace lintel

@@ -17,7 +17,7 @@ constexpr double kLeastGain = 1e-3;    // of the decrease that the model promise
 }  // namespace
 
 SolveSummary solveWindow(SlidingWindow& window, const std::vector<Factor>& factors, const CalibrationParams& calibration,
-                         int max_iterations) {
+                         const SolveLimits& limits) {
   std::set<BlockKey> frozen;
   if (!calibration.refine_extrinsics) frozen.insert({BlockKey::kExtrinsics, 0});
   if (!calibration.refine_camera && !calibration.refine_time_offset) frozen.insert({BlockKey::kCorrection, 0});
@@ -26,7 +26,7 @@ SolveSummary solveWindow(SlidingWindow& window, const std::vector<Factor>& facto
   SolveSummary summary;
   double cost = summary.initial_cost = system.linearise();
   double damping = kFirstDamping, raise = 2;
-  while (summary.iterations < max_iterations && damping < kMostDamping) {
+  while (summary.iterations < limits.max_iterations && damping < kMostDamping) {
     ++summary.iterations;
     double moved_cost = cost, gain = 0;
     if (system.solve(damping)) {
@@ -41,12 +41,14 @@ SolveSummary solveWindow(SlidingWindow& window, const std::vector<Factor>& facto
       raise *= 2;
       continue;
     }
-    const bool converged = cost - moved_cost < kTolerance * cost;
+    // A step that rejections have damped is short wherever the minimum lies.
+    const bool settled = damping <= kFirstDamping && system.statesMove() < limits.min_move;
+    const bool converged = settled || cost - moved_cost < kTolerance * cost;
     cost = moved_cost;
     if (converged) break;
     damping = std::max(kLeastDamping, damping * std::max(1.0 / 3, 1 - std::pow(2 * gain - 1, 3)));
     raise = 2;
-    if (summary.iterations < max_iterations) system.linearise();
+    if (summary.iterations < limits.max_iterations) system.linearise();
   }
   summary.final_cost = cost;
   summary.usable = std::isfinite(cost);

@@ -13,9 +13,15 @@ struct SolveSummary {
   bool usable = false;
 };
 
+/// When a solve has had enough.
+struct SolveLimits {
+  int max_iterations = 8;
+  double min_move = 0;  ///< of the states by a step, see ReducedSystem::statesMove; landmarks may still be on their way
+};
+
 /// Minimises the given residuals over all blocks of the window they touch: Levenberg-Marquardt on ReducedSystem. One
 /// thread and a limit on iterations, not on time: the same result every run.
 SolveSummary solveWindow(SlidingWindow& window, const std::vector<Factor>& factors, const CalibrationParams& calibration,
-                         int max_iterations);
+                         const SolveLimits& limits);
 
 }  // namespace lintel

@@ -35,7 +35,7 @@ ResidualScales scalesWith(double point_noise_px, double line_noise_px) {
   factors.addPoints();
   params.degeneracy.lines = "drop";
   factors.addLines(params.degeneracy);
-  solveWindow(window, factors.factors(), params.calibration, 10);
+  solveWindow(window, factors.factors(), params.calibration, {10});
   return residualScales(window, factors.factors());
 }
 

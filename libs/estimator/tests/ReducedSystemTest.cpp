@@ -101,6 +101,9 @@ TEST_F(ReducedSystemTest, AStepSolvesTheDampedDenseSystem) {
   EXPECT_NEAR(system.cost(), cost, 1e-9 * cost);
   ASSERT_TRUE(system.solve(1e-12));
   EXPECT_NEAR(system.modelDecrease(), decrease, 1e-4 * decrease);
+  const NormalEquations states = system.eliminate();
+  const Eigen::VectorXd step_of_states = -states.H.ldlt().solve(states.b);
+  EXPECT_NEAR(system.statesMove(), std::sqrt(step_of_states.dot(states.H * step_of_states)), 1e-4 * system.statesMove());
   system.apply();
   for (std::size_t i = 0; i < dense.blocks.size(); ++i) {
     const auto manifold = manifoldOf(dense.blocks[i].kind);
