@@ -2,9 +2,9 @@
 #include "lintel/evaluation/LineErrors.h"
 
 #include <algorithm>
-#include <map>
 #include <utility>
 
+#include "EdgeCover.h"
 #include "LineMatching.h"
 
 namespace lintel {
@@ -13,7 +13,7 @@ namespace {
 
 struct AlignedLine {
   Segment3 segment;
-  bool degenerate, constrained;
+  const MapLine* line;
 };
 
 std::vector<AlignedLine> alignedLines(const std::vector<MapLine>& lines, const Similarity& S_truth_map) {
@@ -21,7 +21,7 @@ std::vector<AlignedLine> alignedLines(const std::vector<MapLine>& lines, const S
   for (const MapLine& line : lines) {
     const Segment3 segment{S_truth_map * line.segment_w.start, S_truth_map * line.segment_w.end};
     if (segment.length() > 1e-6 && segment.start.allFinite() && segment.end.allFinite())
-      result.push_back({segment, line.degenerate, line.constrained});
+      result.push_back({segment, &line});
   }
   return result;
 }
@@ -73,40 +73,11 @@ class ErrorCollector {
   std::vector<double> direction_rad_, distance_m_;
 };
 
-/// How much of the edges is covered, and how often.
-class CoverCount {
- public:
-  void add(std::size_t edge_index, const Segment3& segment, const Segment3& edge) {
-    const auto along = [&](const Eigen::Vector3d& p) {
-      return std::clamp((p - edge.start).dot(edge.direction()), 0.0, edge.length());
-    };
-    const auto [from, to] = std::minmax({along(segment.start), along(segment.end)});
-    if (to > from) intervals_[edge_index].emplace_back(from, to);
-  }
-  /// Sum of the intervals' lengths over the length of their union.
-  double duplicates() const {
-    double sum_m = 0, union_m = 0;
-    for (auto [edge_index, intervals] : intervals_) {
-      std::sort(intervals.begin(), intervals.end());
-      double end = 0;
-      for (const auto& [from, to] : intervals) {
-        sum_m += to - from;
-        union_m += std::max(0.0, to - std::max(from, end));
-        end = std::max(end, to);
-      }
-    }
-    return sum_m / union_m;
-  }
-
- private:
-  std::map<std::size_t, std::vector<std::pair<double, double>>> intervals_;
-};
-
 void addPrecision(LineErrors& result, const std::vector<AlignedLine>& lines, const std::vector<TrueLine>& truth,
                   const LineErrorParams& params) {
   Shares precision(params.tolerances_m);
   ErrorCollector all, degenerate, well_determined, constrained;
-  CoverCount cover;
+  EdgeCover cover;
   for (const AlignedLine& line : lines) {
     const LineMatch match = matchLine(line.segment, truth, params);
     const double piece_m = line.segment.length() / static_cast<double>(match.distances_m.size());
@@ -114,9 +85,9 @@ void addPrecision(LineErrors& result, const std::vector<AlignedLine>& lines, con
     if (!match.edge) continue;
     const Segment3& edge = truth[*match.edge].segment_w;
     all.add(line.segment, edge);
-    (line.degenerate ? degenerate : well_determined).add(line.segment, edge);
-    if (line.constrained) constrained.add(line.segment, edge);
-    cover.add(*match.edge, line.segment, edge);
+    (line.line->degenerate ? degenerate : well_determined).add(line.segment, edge);
+    if (line.line->constrained) constrained.add(line.segment, edge);
+    cover.add(*match.edge, *line.line, line.segment, edge);
   }
   result.precision = precision.result();
   result.all_matched = all.result();
@@ -124,6 +95,7 @@ void addPrecision(LineErrors& result, const std::vector<AlignedLine>& lines, con
   result.well_determined_matched = well_determined.result();
   result.constrained_matched = constrained.result();
   result.duplicates = cover.duplicates();
+  result.duplicates_not_seen_apart = cover.duplicatesNotSeenApart();
 }
 
 void addSurfacePrecision(LineErrors& result, const std::vector<AlignedLine>& lines, const LineErrorParams& params,
@@ -169,8 +141,8 @@ LineErrors evaluateLines(const std::vector<MapLine>& lines, const Similarity& S_
   result.tolerances_m = params.tolerances_m;
   result.lines = aligned.size();
   for (const AlignedLine& line : aligned) {
-    result.degenerate += line.degenerate ? 1 : 0;
-    result.constrained += line.constrained ? 1 : 0;
+    result.degenerate += line.line->degenerate ? 1 : 0;
+    result.constrained += line.line->constrained ? 1 : 0;
     result.length_m += line.segment.length();
   }
   addPrecision(result, aligned, truth, params);

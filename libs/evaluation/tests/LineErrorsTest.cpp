@@ -84,6 +84,22 @@ TEST(LineErrors, DuplicatesByHand) {
   EXPECT_NEAR(e.duplicates, 2.0 / 1.5, 1e-12);
 }
 
+TEST(LineErrors, LinesThatImagesShowApartAreNoDuplicates) {
+  // All three on one metre of an edge: the second 10 px beside the first in one image, the third 1 px.
+  std::vector<MapLine> map(3, mapLine({0, 0, 0}, {1, 0, 0}));
+  const auto seenAt = [](std::uint64_t keyframe, double y) { return MapLineObservation{keyframe, {100, y}, {200, y}}; };
+  map[0].observations = {seenAt(1, 50), seenAt(3, 50)};
+  map[1].observations = {seenAt(2, 50), seenAt(3, 60)};
+  map[2].observations = {seenAt(3, 51)};
+  LineErrors e = evaluateLines(map, {}, kEdges);
+  EXPECT_NEAR(e.duplicates, 3, 1e-12);
+  EXPECT_NEAR(e.duplicates_not_seen_apart, 2, 1e-12);
+  map[2].observations = {seenAt(4, 51)};  // never in one image with the others: nothing says that it is another line
+  EXPECT_NEAR(evaluateLines(map, {}, kEdges).duplicates_not_seen_apart, 2, 1e-12);
+  map[2].observations = {seenAt(3, 90)};
+  EXPECT_NEAR(evaluateLines(map, {}, kEdges).duplicates_not_seen_apart, 1, 1e-12);
+}
+
 TEST(LineErrors, ShortAndRarelySeenEdgesDoNotCountForRecall) {
   const std::vector<TrueLine> truth = {edge({0, 0, 0}, {2, 0, 0}), edge({5, 0, 0}, {5.4, 0, 0}),
                                        edge({8, 0, 0}, {9, 0, 0}, 59)};

@@ -37,5 +37,14 @@ TEST(Segment, LineAngleKnowsNoSign) {
 
 TEST(Segment, LineAngleIsExactNearZero) { EXPECT_DOUBLE_EQ(lineAngle({1, 0, 0}, {1, 1e-12, 0}), 1e-12); }
 
+TEST(Segment2, SeparationByHand) {
+  const Segment2 a{{10, 20}, {110, 20}};
+  EXPECT_DOUBLE_EQ(separation(a, {{10, 25}, {110, 25}}), 5);
+  EXPECT_DOUBLE_EQ(separation(a, {{110, 15}, {10, 15}}), 5) << "whichever way it runs";
+  EXPECT_DOUBLE_EQ(separation(a, {{60, 20}, {160, 30}}), 2.5) << "mean over what lies side by side: 0 to 5";
+  EXPECT_LT(separation(a, {{100, 25}, {200, 25}}), 0) << "a tenth side by side";
+  EXPECT_LT(separation(a, {{50, 0}, {50, 40}}), 0) << "across";
+}
+
 }  // namespace
 }  // namespace lintel

@@ -24,21 +24,6 @@ struct Candidate {
   bool operator<(const Candidate& o) const { return std::tie(score, a, b) < std::tie(o.score, o.a, o.b); }
 };
 
-/// How far two image segments are apart across the first one, where they lie side by side; negative when they do not.
-double separationPx(const LineView& a, const LineView& b) {
-  const Eigen::Vector2d along = a.end_px - a.start_px;
-  const double length = along.norm();
-  if (length < 1) return -1;
-  const Eigen::Vector2d d = along / length, n(-d.y(), d.x());
-  double u0 = (b.start_px - a.start_px).dot(d), u1 = (b.end_px - a.start_px).dot(d);
-  double v0 = (b.start_px - a.start_px).dot(n), v1 = (b.end_px - a.start_px).dot(n);
-  if (u0 > u1) std::swap(u0, u1), std::swap(v0, v1);
-  const double from = std::max(0.0, u0), to = std::min(length, u1);
-  if (to - from < 0.2 * std::min(length, u1 - u0) || u1 - u0 < 1) return -1;
-  const auto across = [&](double u) { return v0 + (v1 - v0) * (u - u0) / (u1 - u0); };
-  return 0.5 * std::abs(across(from) + across(to));
-}
-
 /// How far apart two lines are in space, squared, in standard deviations: their positions and directions across `a` where
 /// that was seen.
 double apartness(const LineEstimate& a, const LineEstimate& b) {
@@ -147,8 +132,8 @@ class LineMerger {
         continue;
       }
       for (auto k = j; k != b.views.end() && k->keyframe == i->keyframe; ++k) {
-        const double separation = separationPx(*i, *k);
-        if (separation >= 0) ++(separation > params_.min_separation_px ? apart : together);
+        const double px = separation({i->start_px, i->end_px}, {k->start_px, k->end_px});
+        if (px >= 0) ++(px > params_.min_separation_px ? apart : together);
       }
       ++i;
     }

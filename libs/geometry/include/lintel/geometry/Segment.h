@@ -15,6 +15,15 @@ struct Segment3 {
   Eigen::Vector3d midpoint() const { return 0.5 * (start + end); }
 };
 
+/// A finite segment in an image [px].
+struct Segment2 {
+  Eigen::Vector2d start = Eigen::Vector2d::Zero(), end = Eigen::Vector2d::Zero();
+};
+
+/// How far two image segments are apart across `a`, on average, where they lie side by side [px]; negative when they
+/// hardly do: on less than a fifth of the shorter one.
+double separation(const Segment2& a, const Segment2& b);
+
 /// Distance from `p` to the segment (not its infinite line) [m].
 double distanceToSegment(const Eigen::Vector3d& p, const Segment3& segment);
 
