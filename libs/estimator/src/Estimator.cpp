@@ -25,9 +25,10 @@ namespace lintel {
 
 namespace {
 
-// Standard deviations of all states together. After it only landmarks move, most of them one by one, and no trajectory
-// changes by that: waiting for them took half of the solver's time.
-constexpr double kSettled = 0.3;
+/// When a solve may end, see SolveLimits::min_move. After it only landmarks move, most of them one by one, and no
+/// trajectory changes by that: waiting for them took a quarter of the solver's time. Not so with degenerate lines used as
+/// they are: marginalised half way they bend the trajectory.
+double settledMove(const DegeneracyParams& degeneracy) { return degeneracy.lines == "use" ? 0 : 0.3; }
 
 ImuNoise scaledNoise(const ImuNoise& noise, const FactorParams& p) {
   return {noise.gyro_noise * p.gyro_noise_scale, noise.gyro_walk * p.gyro_walk_scale,
@@ -212,7 +213,8 @@ void Estimator::Impl::solve(WindowUpdate& update) {
   factors.addRest(params_.rest_velocity_sigma);
   factors.addPoints();
   factors.addLines(params_.degeneracy);
-  update.iterations = solveWindow(window_, factors.factors(), params_.calibration, {params_.max_iterations, kSettled}).iterations;
+  const SolveLimits limits{params_.max_iterations, settledMove(params_.degeneracy)};
+  update.iterations = solveWindow(window_, factors.factors(), params_.calibration, limits).iterations;
   if (params_.factors.adaptive_weights) adaptSigmas(residualScales(window_, factors.factors()), configured_, params_.factors);
   rejectOutliers(window_, params_.landmarks);
   for (auto& [id, track] : window_.lines)
