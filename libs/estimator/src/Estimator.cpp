@@ -26,9 +26,11 @@ namespace lintel {
 namespace {
 
 /// When a solve may end, see SolveLimits::min_move. After it only landmarks move, most of them one by one, and no
-/// trajectory changes by that: waiting for them took a quarter of the solver's time. Not so with degenerate lines used as
-/// they are: marginalised half way they bend the trajectory.
-double settledMove(const DegeneracyParams& degeneracy) { return degeneracy.lines == "use" ? 0 : 0.3; }
+/// trajectory changes by that: waiting for them took a quarter of the solver's time. Not so where degenerate lines are used as
+/// they are, or not found (few are by the epipole): marginalised half way they bend the trajectory.
+double settledMove(const DegeneracyParams& degeneracy) {
+  return degeneracy.lines == "use" || degeneracy.test == "epipole" ? 0 : 0.3;
+}
 
 ImuNoise scaledNoise(const ImuNoise& noise, const FactorParams& p) {
   return {noise.gyro_noise * p.gyro_noise_scale, noise.gyro_walk * p.gyro_walk_scale,
