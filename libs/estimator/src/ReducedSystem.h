@@ -47,7 +47,7 @@ class ReducedSystem {
   double modelDecrease() const { return model_decrease_; }
 
   /// How far the last solution moves the states (all blocks but landmarks), in their standard deviations: Mahalanobis
-  /// distance, so that a move by m shifts no combination of states by more than m sigma.
+  /// distance in the damped system, so that a move by m shifts no combination of states by more than m sigma.
   double statesMove() const { return states_move_; }
 
   /// Moves the window's blocks by the last solution; takes that back.
