@@ -7,7 +7,7 @@ namespace lintel {
 
 namespace {
 
-constexpr double kApart_px = 2.5;  ///< between two lines of an image, as when the map merges lines
+constexpr double kApart_px = 2.5;  ///< between two lines of an image; MergeParams::min_separation_px has the same
 
 /// Whether the images that show both show two lines: at least half of those in which they lie side by side.
 bool areSeenApart(const MapLine& a, const MapLine& b) {
