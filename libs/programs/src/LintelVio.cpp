@@ -214,6 +214,8 @@ class LintelVio {
     for (const std::string& failure : s.failures) out_ << "started anew " << failure << "\n";
     out_ << "map: " << result.map.lines.size() << " lines, " << result.map.points.size() << " points, "
          << result.map.keyframes.size() << " keyframes\n";
+    if (result.lines_beside > 0)
+      out_ << "     " << result.lines_beside << " more lines run beside better seen ones and were left out (map.spacing.min_m, 0 keeps them)\n";
     if (!result.refinement.verdict.empty()) out_ << result.refinement.verdict << "\n";
     const fs::path folder(output_);
     out_ << "written: " << (folder / "trajectory.tum").string()

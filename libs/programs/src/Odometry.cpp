@@ -6,6 +6,7 @@
 #include <thread>
 
 #include "BoundedQueue.h"
+#include "lintel/mapping/LineSpacing.h"
 #include "lintel/mapping/MapBuilder.h"
 #include "lintel/tracking/FrontEnd.h"
 
@@ -80,6 +81,7 @@ class BackEnd {
       for (const auto& [t_ns, T_w_b] : material.trajectory) result_.refined_trajectory.push_back({t_ns, T_w_b});
     }
     result_.map = drawMap(configuration_.map, material);
+    result_.lines_beside = spaceLines(configuration_.map, result_.map);
   }
 
   void count(const WindowUpdate& update) {

@@ -41,6 +41,7 @@ struct OdometryResult {
   std::vector<OdometryPose> refined_trajectory;  ///< empty when there was no refinement or it was not accepted
   RefinementReport refinement;
   LineMap map;
+  int lines_beside = 0;  ///< known, but beside better seen ones: see map.spacing
   Rig rig;  ///< as refined
   CalibrationEstimate window_calibration;  ///< as the last window had it, before any batch refinement
   double time_offset_s = 0;

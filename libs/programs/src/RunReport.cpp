@@ -117,7 +117,9 @@ class Report {
     if (errors_)
       table.rows.push_back({"position error (RMSE)", fixedText(errors_->position_m.rmse, 4) + " m, at most " +
                                                          fixedText(errors_->position_m.max, 4) + " m"});
-    table.rows.push_back({"map", std::to_string(result_.map.lines.size()) + " lines, " +
+    const std::string beside =
+        result_.lines_beside > 0 ? " (" + std::to_string(result_.lines_beside) + " more run beside better seen ones)" : "";
+    table.rows.push_back({"map", std::to_string(result_.map.lines.size()) + " lines" + beside + ", " +
                                      std::to_string(result_.map.points.size()) + " points, " +
                                      std::to_string(result_.map.keyframes.size()) + " keyframes"});
     const std::string& verdict = result_.refinement.verdict;

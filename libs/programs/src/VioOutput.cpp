@@ -146,6 +146,7 @@ std::string statisticsJson(const OdometryResult& result, const Rig& given, const
         {"distance_unknown", s.mean_lines_distance_unknown}}},
       {"map_points", result.map.points.size()},
       {"map_lines", result.map.lines.size()},
+      {"map_lines_beside", result.lines_beside},
       {"refinement", refinementJson(result)},
       {"calibration", calibrationJson(result, given)},
       {"cpu_ms_per_frame", s.frames > 0 ? process_ms / static_cast<double>(s.frames) : 0},

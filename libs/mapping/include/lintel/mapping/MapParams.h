@@ -35,6 +35,18 @@ struct MergeParams {
   }
 };
 
+/// How close parallel lines may stand in the map.
+struct SpacingParams {
+  double min_m = 0.05;         ///< of those closer only the better seen is drawn; 0: all are
+  double min_relative = 0.03;  ///< of the distance they were seen from: the smaller one counts
+
+  template <class F>
+  void fields(F&& field) {
+    field("min_m", min_m);
+    field("min_relative", min_relative);
+  }
+};
+
 /// Parallel groups.
 struct GroupParams {
   double max_angle_rad = 0.05;  ///< of a member from the group's direction
@@ -64,6 +76,7 @@ struct MapParams {
   double coverage = 0.2;              ///< a piece of a line is drawn when this share of a track's views (and two) saw it
   MergeParams merge;
   GroupParams groups;
+  SpacingParams spacing;
   /// use: drawn as they are; drop: left out; constrain: tied to parallel ones and drawn where that makes them known.
   /// No key of its own: estimator.degeneracy.lines.
   std::string degenerate_lines = "constrain";
@@ -83,6 +96,7 @@ struct MapParams {
     field("coverage", coverage);
     field("merge", merge);
     field("groups", groups);
+    field("spacing", spacing);
   }
 };
 
