@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "ReducedSystem.h"
 
-#include <Eigen/Cholesky>
 #include <algorithm>
+#include <tuple>
+
+#include "SparseCholesky.h"
 
 namespace lintel {
 
@@ -18,6 +20,15 @@ constexpr double kLeastDamping = 1e-6;
 
 }  // namespace
 
+bool comesBefore(const BlockKey& a, const BlockKey& b) {
+  const auto rank = [](const BlockKey& key) {
+    const int kind = key.kind == BlockKey::kMotion ? -1 : static_cast<int>(key.kind);
+    const bool of_frame = key.kind == BlockKey::kMotion || key.kind == BlockKey::kPose;
+    return std::make_tuple(kind, of_frame ? ~key.id : key.id);  // the newest frame has the highest id
+  };
+  return rank(a) < rank(b);
+}
+
 ReducedSystem::ReducedSystem(SlidingWindow& window, const std::vector<Factor>& factors, const std::set<BlockKey>& first,
                              const std::set<BlockKey>& frozen)
     : window_(window), landmarks_(window, factors, placeCameras(window)) {
@@ -32,9 +43,9 @@ void ReducedSystem::placeStates(const std::vector<Factor>& factors, const std::s
   for (const Factor& factor : factors)
     for (const BlockKey& key : factor.blocks)
       if (key.kind != BlockKey::kPoint && key.kind != BlockKey::kLine && frozen.count(key) == 0) all.insert(key);
-  for (const bool wanted : {true, false})
-    for (const BlockKey& key : all)
-      if ((first.count(key) > 0) == wanted) states_.blocks.push_back(key);
+  states_.blocks.assign(all.begin(), all.end());
+  std::sort(states_.blocks.begin(), states_.blocks.end(), comesBefore);
+  std::stable_partition(states_.blocks.begin(), states_.blocks.end(), [&first](const BlockKey& key) { return first.count(key) > 0; });
   Eigen::Index size = 0;
   for (const BlockKey& key : states_.blocks) {
     states_.offsets.push_back(size);
@@ -143,68 +154,41 @@ double ReducedSystem::addPrior(const Factor& factor, const PriorFactor& prior) {
   return 0.5 * r.squaredNorm();
 }
 
-std::vector<ReducedSystem::Chain> ReducedSystem::chains() const {
+CameraChain ReducedSystem::chain() const {
   const CameraLayout& layout = landmarks_.layout();
-  std::vector<Chain> result;
-  const auto add = [&](const BlockKey& key, Eigen::Index within, Eigen::Index row, Eigen::MatrixXd G) {
-    if (const Eigen::Index at = offsetOf(key); at >= 0) result.push_back({row, at + within, std::move(G)});
-  };
-  for (int k = 0; k < layout.cameras; ++k) {
-    const CameraView& view = views_[static_cast<std::size_t>(k)];
-    const FrameId frame = window_.frames[static_cast<std::size_t>(k)].id;
-    add({BlockKey::kPose, frame}, 0, layout.camera(k), view.d_pose);
-    add({BlockKey::kExtrinsics, 0}, 0, layout.camera(k), view.d_extrinsics);
-    add({BlockKey::kCorrection, 0}, kTimeOffsetAt, layout.camera(k), view.d_offset);
-  }
-  add({BlockKey::kCorrection, 0}, 0, layout.intrinsics(), Eigen::MatrixXd::Identity(kIntrinsicsSize, kIntrinsicsSize));
+  StatePlaces places;
+  for (const WindowFrame& frame : window_.frames) places.poses.push_back(offsetOf({BlockKey::kPose, frame.id}));
+  places.extrinsics = offsetOf({BlockKey::kExtrinsics, 0});
+  places.correction = offsetOf({BlockKey::kCorrection, 0});
+  places.directions.resize(layout.directions.size());
   for (const auto& [id, place] : layout.directions)
-    add({BlockKey::kDirection, id}, 0, layout.direction(place),
-        Eigen::MatrixXd::Identity(kDirectionTangent, kDirectionTangent));
-  return result;
-}
-
-void ReducedSystem::addVision(const std::vector<Chain>& chains, const CameraEquations& vision, Eigen::MatrixXd& H,
-                              Eigen::VectorXd& b) {
-  const Eigen::MatrixXd full = vision.H.selfadjointView<Eigen::Lower>();
-  Eigen::MatrixXd rows;
-  for (const Chain& right : chains) {
-    rows.noalias() = full.middleCols(right.row, right.G.rows()).lazyProduct(right.G);
-    for (const Chain& left : chains)
-      if (left.column >= right.column)
-        H.block(left.column, right.column, left.G.cols(), right.G.cols()) +=
-            left.G.transpose().lazyProduct(rows.middleRows(left.row, left.G.rows()));
-    b.segment(right.column, right.G.cols()) += right.G.transpose() * vision.b.segment(right.row, right.G.rows());
-  }
+    places.directions[static_cast<std::size_t>(place)] = offsetOf({BlockKey::kDirection, id});
+  return {layout, views_, places};
 }
 
 NormalEquations ReducedSystem::eliminate() {
   NormalEquations result = states_;
-  addVision(chains(), landmarks_.eliminate(0), result.H, result.b);
+  chain().add(landmarks_.eliminate(0), result.H, result.b);
   result.H.triangularView<Eigen::StrictlyUpper>() = result.H.transpose();
   return result;
 }
 
 bool ReducedSystem::solve(double damping) {
-  const std::vector<Chain> all = chains();
+  const CameraChain chain = this->chain();
   Eigen::MatrixXd H = states_.H;
   Eigen::VectorXd b = states_.b;
-  addVision(all, landmarks_.eliminate(damping), H, b);
+  chain.add(landmarks_.eliminate(damping), H, b);
   const Eigen::VectorXd added = damping * H.diagonal().cwiseMax(kLeastDamping);
   H.diagonal() += added;
-  const Eigen::LLT<Eigen::MatrixXd> llt(H);
-  if (llt.info() != Eigen::Success) return false;
-  step_ = -llt.solve(b);
+  if (!factoriseSparse(H)) return false;
+  step_ = -H.triangularView<Eigen::Lower>().solve(b);
+  states_move_ = step_.norm();  // before the turn back from the factor's coordinates
+  H.transpose().triangularView<Eigen::Upper>().solveInPlace(step_);
   if (!step_.allFinite()) return false;
-  states_move_ = (llt.matrixU() * step_).norm();
 
-  const CameraLayout& layout = landmarks_.layout();
-  Eigen::VectorXd camera_step = Eigen::VectorXd::Zero(layout.size());
   Eigen::VectorXd gradient = states_.b;
-  for (const Chain& c : all) {
-    camera_step.segment(c.row, c.G.rows()) += c.G * step_.segment(c.column, c.G.cols());
-    gradient.segment(c.column, c.G.cols()) += c.G.transpose() * landmarks_.direct().b.segment(c.row, c.G.rows());
-  }
-  model_decrease_ = 0.5 * step_.dot(added.cwiseProduct(step_) - gradient) + landmarks_.backSubstitute(camera_step, damping);
+  chain.addGradient(landmarks_.direct().b, gradient);
+  model_decrease_ = 0.5 * step_.dot(added.cwiseProduct(step_) - gradient) + landmarks_.backSubstitute(chain.cameraStep(step_), damping);
   return true;
 }
 

@@ -6,11 +6,16 @@
 #include <set>
 #include <vector>
 
+#include "CameraChain.h"
 #include "LandmarkSystem.h"
 #include "WindowFactors.h"
 #include "lintel/estimator/SlidingWindow.h"
 
 namespace lintel {
+
+/// The order of states in normal equations: motions, then poses, each the newest first, then the others. A motion hangs on
+/// poses and motions of its neighbours only, and the oldest one on the prior, so few entries come first [SparseCholesky.h].
+bool comesBefore(const BlockKey& a, const BlockKey& b);
 
 /// Normal equations in the tangent spaces of some blocks: H dx = -b.
 struct NormalEquations {
@@ -61,14 +66,7 @@ class ReducedSystem {
   double addOther(const Factor& factor);
   double addPrior(const Factor& factor, const PriorFactor& prior);
 
-  /// How a part of the cameras' tangent space hangs on a state.
-  struct Chain {
-    Eigen::Index row, column;  ///< in CameraEquations, in the states
-    Eigen::MatrixXd G;
-  };
-  std::vector<Chain> chains() const;
-  static void addVision(const std::vector<Chain>& chains, const CameraEquations& vision, Eigen::MatrixXd& H,
-                        Eigen::VectorXd& b);
+  CameraChain chain() const;
 
   SlidingWindow& window_;
   std::vector<Factor> others_;           // without points and lines

@@ -52,7 +52,7 @@ LinearFactor lineariseFactor(SlidingWindow& window, const Factor& factor) {
 
 NormalEquations linearise(SlidingWindow& window, const std::vector<Factor>& factors, const std::set<BlockKey>& first) {
   // order: landmarks to drop, other blocks to drop, the rest
-  std::set<BlockKey> all;
+  std::set<BlockKey, decltype(&comesBefore)> all(&comesBefore);
   for (const Factor& factor : factors) all.insert(factor.blocks.begin(), factor.blocks.end());
   NormalEquations eq;
   const auto append = [&](bool wanted_first, bool wanted_landmark) {
