@@ -230,16 +230,20 @@ int LandmarkSystem::directionOf(SlidingWindow& window, const BlockKey& key) {
 
 LandmarkSystem::LandmarkSystem(SlidingWindow& window, const std::vector<Factor>& factors,
                                const std::map<FrameId, int>& camera_of)
-    : correction_(window.correction.data()), motions_(camera_of.size()) {
+    : correction_(window.correction.data()), motions_(camera_of.size()), seeing_(camera_of.size(), false) {
   layout_.cameras = static_cast<int>(camera_of.size());
   std::map<TrackId, std::size_t> point_at, line_at;
   const auto blockOf = [&](auto& landmarks, std::map<TrackId, std::size_t>& places, const BlockKey& key) -> auto& {
     const auto [it, is_new] = places.emplace(key.id, landmarks.size());
-    if (is_new) landmarks.emplace_back().block = window.block(key);
+    if (is_new) {
+      landmarks.emplace_back().block = window.block(key);
+      landmarks.back().sightings.reserve(camera_of.size());
+    }
     return landmarks[it->second];
   };
   for (const Factor& factor : factors) {
     if (!isVision(factor)) continue;
+    if (factor.blocks.front().kind == BlockKey::kPose) seeing_[static_cast<std::size_t>(camera_of.at(factor.blocks.front().id))] = true;
     if (const BlockKey& key = factor.blocks.back(); factor.blocks.front().kind == BlockKey::kLine) {  // structural
       auto& line = blockOf(lines_, line_at, factor.blocks.front());
       line.structural = &factor;
@@ -260,6 +264,14 @@ LandmarkSystem::LandmarkSystem(SlidingWindow& window, const std::vector<Factor>&
       motions_[static_cast<std::size_t>(camera)] = line.sightings.back().factor->motion();
     }
   }
+}
+
+std::set<BlockKey> LandmarkSystem::states(const SlidingWindow& window) const {
+  std::set<BlockKey> states;
+  for (std::size_t k = 0; k < seeing_.size(); ++k)
+    if (seeing_[k]) states.insert({{BlockKey::kPose, window.frames[k].id}, {BlockKey::kExtrinsics, 0}, {BlockKey::kCorrection, 0}});
+  for (const auto& [id, place] : layout_.directions) states.insert({BlockKey::kDirection, id});
+  return states;
 }
 
 double LandmarkSystem::cost(const std::vector<CameraView>& views) const {

@@ -3,6 +3,7 @@
 
 #include <Eigen/Core>
 #include <map>
+#include <set>
 #include <vector>
 
 #include "WindowFactors.h"
@@ -82,6 +83,10 @@ class LandmarkSystem {
   static bool isVision(const Factor& factor);
 
   const CameraLayout& layout() const { return layout_; }
+
+  /// The states that its residuals depend on.
+  std::set<BlockKey> states(const SlidingWindow& window) const;
+
   const FrameMotion& motion(int camera) const { return motions_[static_cast<std::size_t>(camera)]; }  ///< as its factors say
   double cost(const std::vector<CameraView>& views) const;
   double linearise(const std::vector<CameraView>& views);
@@ -114,6 +119,7 @@ class LandmarkSystem {
 
   const double* correction_;
   std::vector<FrameMotion> motions_;
+  std::vector<bool> seeing_;  ///< cameras with residuals
   CameraLayout layout_;
   std::vector<LandmarkBlock<PointKind>> points_;
   std::vector<LandmarkBlock<LineKind>> lines_;

@@ -18,6 +18,9 @@ std::map<FrameId, int> placeCameras(const SlidingWindow& window) {
 
 constexpr double kLeastDamping = 1e-6;
 
+/// Where the tangent space is the space itself, and its Jacobians are identities.
+bool isVectorSpace(const StateManifold& manifold) { return manifold.AmbientSize() == manifold.TangentSize(); }
+
 }  // namespace
 
 bool comesBefore(const BlockKey& a, const BlockKey& b) {
@@ -34,15 +37,13 @@ ReducedSystem::ReducedSystem(SlidingWindow& window, const std::vector<Factor>& f
     : window_(window), landmarks_(window, factors, placeCameras(window)) {
   for (const Factor& factor : factors)
     if (!LandmarkSystem::isVision(factor)) others_.push_back(factor);
-  placeStates(factors, first, frozen);
+  placeStates(first, frozen);
 }
 
-void ReducedSystem::placeStates(const std::vector<Factor>& factors, const std::set<BlockKey>& first,
-                                const std::set<BlockKey>& frozen) {
-  std::set<BlockKey> all;
-  for (const Factor& factor : factors)
-    for (const BlockKey& key : factor.blocks)
-      if (key.kind != BlockKey::kPoint && key.kind != BlockKey::kLine && frozen.count(key) == 0) all.insert(key);
+void ReducedSystem::placeStates(const std::set<BlockKey>& first, const std::set<BlockKey>& frozen) {
+  std::set<BlockKey> all = landmarks_.states(window_);
+  for (const Factor& factor : others_) all.insert(factor.blocks.begin(), factor.blocks.end());
+  for (const BlockKey& key : frozen) all.erase(key);
   states_.blocks.assign(all.begin(), all.end());
   std::sort(states_.blocks.begin(), states_.blocks.end(), comesBefore);
   std::stable_partition(states_.blocks.begin(), states_.blocks.end(), [&first](const BlockKey& key) { return first.count(key) > 0; });
@@ -99,6 +100,7 @@ double ReducedSystem::addOther(const Factor& factor) {
   std::vector<const double*> blocks;
   std::vector<RowMajorMatrix> ambient;
   std::vector<double*> pointers;
+  Placement to = placementOf(factor);
   for (std::size_t i = 0; i < factor.blocks.size(); ++i) {
     blocks.push_back(window_.block(factor.blocks[i]));
     ambient.emplace_back(rows, factor.cost->parameter_block_sizes()[i]);
@@ -106,22 +108,19 @@ double ReducedSystem::addOther(const Factor& factor) {
   for (RowMajorMatrix& m : ambient) pointers.push_back(m.data());
   Eigen::VectorXd r(rows);
   factor.cost->Evaluate(blocks.data(), r.data(), pointers.data());
-  std::vector<Eigen::MatrixXd> J;
-  std::vector<Eigen::Index> at;
+  Eigen::MatrixXd J(rows, to.size());
   for (std::size_t i = 0; i < blocks.size(); ++i) {
-    const auto manifold = manifoldOf(factor.blocks[i].kind);
-    RowMajorMatrix plus(manifold->AmbientSize(), manifold->TangentSize());
-    manifold->PlusJacobian(blocks[i], plus.data());
-    J.emplace_back(ambient[i].lazyProduct(plus));
-    at.push_back(offsetOf(factor.blocks[i]));
+    const StateManifold& manifold = *manifoldOf(factor.blocks[i].kind);
+    auto of_block = J.middleCols(to.from[i], manifold.TangentSize());
+    if (isVectorSpace(manifold)) {
+      of_block = ambient[i];
+      continue;
+    }
+    RowMajorMatrix plus(manifold.AmbientSize(), manifold.TangentSize());
+    manifold.PlusJacobian(blocks[i], plus.data());
+    of_block = ambient[i].lazyProduct(plus);
   }
-  for (std::size_t i = 0; i < J.size(); ++i) {
-    if (at[i] < 0) continue;
-    states_.b.segment(at[i], J[i].cols()).noalias() += J[i].transpose() * r;
-    for (std::size_t j = 0; j < J.size(); ++j)
-      if (at[j] >= 0 && at[j] <= at[i])
-        states_.H.block(at[i], at[j], J[i].cols(), J[j].cols()).noalias() += J[i].transpose() * J[j];
-  }
+  addInformation(to, J.transpose() * J, J.transpose() * r);
   return 0.5 * r.squaredNorm();
 }
 
@@ -130,28 +129,41 @@ double ReducedSystem::addPrior(const Factor& factor, const PriorFactor& prior) {
   std::vector<const double*> blocks;
   for (const BlockKey& key : factor.blocks) blocks.push_back(window_.block(key));
   const Eigen::VectorXd r = prior.constant() + prior.root() * prior.difference(blocks.data());
-  const Eigen::VectorXd gradient = prior.root().transpose() * r;
-  std::vector<Eigen::MatrixXd> C;
-  std::vector<Eigen::Index> from, to;
-  Eigen::Index end = 0;
+  Eigen::VectorXd gradient = prior.root().transpose() * r;
+  Eigen::MatrixXd H = prior.information();
+  const Placement to = placementOf(factor);
   for (std::size_t i = 0; i < blocks.size(); ++i) {
     const PriorBlock& block = prior.blocks()[i];
+    if (isVectorSpace(*block.manifold)) continue;
     RowMajorMatrix plus(block.manifold->AmbientSize(), block.manifold->TangentSize());
     block.manifold->PlusJacobian(blocks[i], plus.data());
-    C.emplace_back(block.manifold->differenceJacobian(blocks[i], block.linearisation.data()).lazyProduct(plus));
-    from.push_back(end);
-    to.push_back(offsetOf(factor.blocks[i]));
-    end += C[i].cols();
+    const Eigen::MatrixXd C = block.manifold->differenceJacobian(blocks[i], block.linearisation.data()).lazyProduct(plus);
+    H.middleCols(to.from[i], C.cols()) = H.middleCols(to.from[i], C.cols()).lazyProduct(C).eval();
+    H.middleRows(to.from[i], C.cols()) = C.transpose().lazyProduct(H.middleRows(to.from[i], C.cols())).eval();
+    gradient.segment(to.from[i], C.cols()) = C.transpose().lazyProduct(gradient.segment(to.from[i], C.cols())).eval();
   }
-  for (std::size_t i = 0; i < blocks.size(); ++i) {
-    if (to[i] < 0) continue;
-    states_.b.segment(to[i], C[i].cols()) += C[i].transpose() * gradient.segment(from[i], C[i].cols());
-    for (std::size_t j = 0; j < blocks.size(); ++j)
-      if (to[j] >= 0 && to[j] <= to[i])
-        states_.H.block(to[i], to[j], C[i].cols(), C[j].cols()) +=
-            C[i].transpose() * prior.information().block(from[i], from[j], C[i].cols(), C[j].cols()) * C[j];
-  }
+  addInformation(to, H, gradient);
   return 0.5 * r.squaredNorm();
+}
+
+ReducedSystem::Placement ReducedSystem::placementOf(const Factor& factor) const {
+  Placement placement;
+  for (const BlockKey& key : factor.blocks) {
+    placement.to.push_back(offsetOf(key));
+    placement.from.push_back(placement.from.back() + manifoldOf(key.kind)->TangentSize());
+  }
+  return placement;
+}
+
+void ReducedSystem::addInformation(const Placement& place, const Eigen::MatrixXd& H, const Eigen::VectorXd& b) {
+  for (std::size_t i = 0; i < place.to.size(); ++i) {
+    const Eigen::Index rows = place.from[i + 1] - place.from[i];
+    if (place.to[i] < 0) continue;
+    states_.b.segment(place.to[i], rows) += b.segment(place.from[i], rows);
+    for (std::size_t j = 0; j < place.to.size(); ++j)
+      if (const Eigen::Index columns = place.from[j + 1] - place.from[j]; place.to[j] >= 0 && place.to[j] <= place.to[i])
+        states_.H.block(place.to[i], place.to[j], rows, columns) += H.block(place.from[i], place.from[j], rows, columns);
+  }
 }
 
 CameraChain ReducedSystem::chain() const {

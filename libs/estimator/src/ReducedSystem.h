@@ -60,13 +60,21 @@ class ReducedSystem {
   void revert();
 
  private:
-  void placeStates(const std::vector<Factor>& factors, const std::set<BlockKey>& first, const std::set<BlockKey>& frozen);
+  void placeStates(const std::set<BlockKey>& first, const std::set<BlockKey>& frozen);
   Eigen::Index offsetOf(const BlockKey& key) const;  ///< negative when frozen or absent
   std::vector<CameraView> views(bool derivatives) const;
   double addOther(const Factor& factor);
   double addPrior(const Factor& factor, const PriorFactor& prior);
 
   CameraChain chain() const;
+
+  /// Where the columns of a factor's blocks lie, among their own and among the states' (negative: a constant).
+  struct Placement {
+    std::vector<Eigen::Index> from{0}, to;  ///< `from` with one more entry for the end
+    Eigen::Index size() const { return from.back(); }
+  };
+  Placement placementOf(const Factor& factor) const;
+  void addInformation(const Placement& place, const Eigen::MatrixXd& H, const Eigen::VectorXd& b);
 
   SlidingWindow& window_;
   std::vector<Factor> others_;           // without points and lines

@@ -8,23 +8,17 @@
 
 namespace lintel {
 
-std::shared_ptr<const StateManifold> manifoldOf(BlockKey::Kind kind) {
-  static const std::shared_ptr<const StateManifold> pose = std::make_shared<PoseManifold>();
-  static const std::shared_ptr<const StateManifold> line = std::make_shared<LineManifold>();
-  static const std::shared_ptr<const StateManifold> motion = std::make_shared<VectorManifold>(kMotionSize);
-  static const std::shared_ptr<const StateManifold> correction = std::make_shared<VectorManifold>(kCorrectionSize);
-  static const std::shared_ptr<const StateManifold> point = std::make_shared<PointManifold>();
-  static const std::shared_ptr<const StateManifold> direction = std::make_shared<DirectionManifold>();
-  switch (kind) {
-    case BlockKey::kPose:
-    case BlockKey::kExtrinsics: return pose;
-    case BlockKey::kMotion: return motion;
-    case BlockKey::kCorrection: return correction;
-    case BlockKey::kDirection: return direction;
-    case BlockKey::kPoint: return point;
-    case BlockKey::kLine: return line;
-  }
-  return nullptr;
+const std::shared_ptr<const StateManifold>& manifoldOf(BlockKey::Kind kind) {
+  using Manifold = std::shared_ptr<const StateManifold>;
+  static const Manifold pose = std::make_shared<PoseManifold>();
+  static const std::array<Manifold, 7> manifolds{pose,  // in the order of BlockKey::Kind
+                                                 std::make_shared<VectorManifold>(kMotionSize),
+                                                 pose,
+                                                 std::make_shared<VectorManifold>(kCorrectionSize),
+                                                 std::make_shared<DirectionManifold>(),
+                                                 std::make_shared<PointManifold>(),
+                                                 std::make_shared<LineManifold>()};
+  return manifolds[static_cast<std::size_t>(kind)];
 }
 
 WindowFactors::WindowFactors(const SlidingWindow& window, const FactorParams& params)

@@ -27,7 +27,7 @@ struct Factor {
 };
 
 /// The manifold of a kind of block; shared, stateless.
-std::shared_ptr<const StateManifold> manifoldOf(BlockKey::Kind kind);
+const std::shared_ptr<const StateManifold>& manifoldOf(BlockKey::Kind kind);
 
 /// Makes the residuals of a window and owns them. Solver and marginaliser ask for what they need: the same residual is
 /// built in one place only.
