@@ -8,9 +8,7 @@
 namespace lintel {
 namespace {
 
-constexpr double kStep_px = 4;             ///< between samples along a short line
-constexpr double kWideStep_px = 6;         ///< along others, if that leaves
-constexpr double kMinSteps = 16;           ///< as many of them
+constexpr double kStep_px = 4;             ///< between samples along the line
 constexpr double kMaxSteps = 50;           ///< on a long line they lie further apart
 constexpr float kWeak = 0.3f;              ///< of the line's usual gradient: less is another edge, or none
 constexpr float kMinGradient = 32 * 2.0f;  ///< 2 grey levels a pixel, in units of the derivative image
@@ -126,7 +124,7 @@ class Profiler {
 
 std::vector<Sample> sampleProfiles(Profiler& profiler, double length, int reach) {
   std::vector<Sample> samples;
-  const double step_px = std::max(std::clamp(length / kMinSteps, kStep_px, kWideStep_px), length / kMaxSteps);
+  const double step_px = std::max(kStep_px, length / kMaxSteps);
   const int steps = static_cast<int>(length / step_px);
   const double first = 0.5 * (length - steps * step_px);
   samples.reserve(static_cast<std::size_t>(steps) + 1);

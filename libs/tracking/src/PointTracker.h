@@ -64,7 +64,7 @@ class PointTracker {
   void addNew(const ImagePyramid& pyramid, PointStatistics& statistics);
   std::vector<cv::Point2f> pixels() const;
   cv::Size window() const { return {params_.window_px, params_.window_px}; }
-  cv::TermCriteria criteria() const { return {cv::TermCriteria::COUNT | cv::TermCriteria::EPS, params_.max_iterations, 0.03}; }
+  cv::TermCriteria criteria() const { return {cv::TermCriteria::COUNT | cv::TermCriteria::EPS, params_.max_iterations, 0.01}; }
 
   PinholeRadtan camera_;
   PointTrackerParams params_;
