@@ -67,6 +67,7 @@ void findPeaks(const std::array<float, 2 * kMaxReach + 3>& profile, int reach, S
 /// Gradient that the line usually has; 0 without any edge.
 float usualGradient(const std::vector<Sample>& samples) {
   std::vector<float> gradients;
+  gradients.reserve(samples.size());
   for (const Sample& sample : samples)
     if (sample.candidates > 0) gradients.push_back(sample.gradient[0]);
   if (gradients.empty()) return 0;
