@@ -100,7 +100,7 @@ double ReducedSystem::addOther(const Factor& factor) {
   std::vector<const double*> blocks;
   std::vector<RowMajorMatrix> ambient;
   std::vector<double*> pointers;
-  Placement to = placementOf(factor);
+  const Placement to = placementOf(factor);
   for (std::size_t i = 0; i < factor.blocks.size(); ++i) {
     blocks.push_back(window_.block(factor.blocks[i]));
     ambient.emplace_back(rows, factor.cost->parameter_block_sizes()[i]);
