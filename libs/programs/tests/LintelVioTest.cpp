@@ -101,6 +101,20 @@ TEST_F(LintelVioTest, WritesWhatItPromisesAndSaysSo) {
   EXPECT_THAT(reference_.out, HasSubstr("trajectory.tum"));
 }
 
+TEST_F(LintelVioTest, LeavesOutLinesThatCrowdTheMapAndSaysSo) {
+  const ProgramRun r = runVio({recording(), "-o", out("spaced"), "-c", eurocConfig(), "--export", "none", "--set",
+                               "map.spacing.min_m=0.5", "--set", "map.spacing.min_relative=1"});
+  ASSERT_EQ(r.exit_code, 0) << r.err;
+  const auto spaced = nlohmann::json::parse(bytesOf(out("spaced") + "/stats.json"));
+  const auto reference = nlohmann::json::parse(bytesOf(out("reference") + "/stats.json"));
+  const int beside = spaced["map_lines_beside"];
+  EXPECT_GT(beside, reference["map_lines_beside"].get<int>());
+  EXPECT_EQ(spaced["map_lines"].get<int>() + beside,
+            reference["map_lines"].get<int>() + reference["map_lines_beside"].get<int>()) << "the lines are the same";
+  EXPECT_EQ(readMap(out("spaced") + "/map.lintel").lines.size(), spaced["map_lines"]);
+  EXPECT_THAT(r.out, HasSubstr(std::to_string(beside) + " more lines run beside better seen ones"));
+}
+
 TEST_F(LintelVioTest, FollowsTheTruth) {
   const TrajectoryErrors errors =
       evaluateTrajectory(readTrajectory(out("reference") + "/trajectory.tum"),

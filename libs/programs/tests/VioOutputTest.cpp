@@ -29,6 +29,7 @@ TEST(StatisticsJson, SaysWhatTheRunCounted) {
   result.rig.camera.fx = 458.5;
   result.time_offset_s = 0.002;
   result.error = "cut off";
+  result.lines_beside = 2;
   for (int i = 0; i < 3; ++i) StageClock::Scope scope(result.statistics.tracking);
   result.statistics.mean_lines_direction_unknown = 7.5;
   result.window_calibration.camera.fx = 458.4;
@@ -45,6 +46,7 @@ TEST(StatisticsJson, SaysWhatTheRunCounted) {
   EXPECT_EQ(json["resets"], 1);
   EXPECT_EQ(json["reset_reasons"][0], "at 1.50 s: the IMU has a gap");
   EXPECT_EQ(json["map_lines"], 3);
+  EXPECT_EQ(json["map_lines_beside"], 2);
   EXPECT_EQ(json["calibration"]["intrinsics_px"][0], 458.5);
   EXPECT_EQ(json["calibration"]["time_offset_s"], 0.002);
   EXPECT_EQ(json["calibration"]["given"]["intrinsics_px"][0], 457);
