@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <opencv2/imgproc.hpp>
 
 #include "DistanceGrid.h"
 
@@ -20,9 +21,9 @@ struct Candidate {
 struct RowSums {
   explicit RowSums(int columns) : xx(columns), xy(columns), yy(columns), pxx(columns), pxy(columns), pyy(columns) {}
 
-  void set(const short* dxdy, int columns) {
+  void set(const short* gx, const short* gy, int columns) {
     for (int x = 0; x < columns; ++x) {
-      const float dx = dxdy[2 * x], dy = dxdy[2 * x + 1];
+      const float dx = gx[x], dy = gy[x];
       pxx[x] = dx * dx;
       pxy[x] = dx * dy;
       pyy[x] = dy * dy;
@@ -38,12 +39,15 @@ struct RowSums {
 };
 
 /// Smaller eigenvalue of the structure tensor over 3x3 pixels (Shi and Tomasi's response); 0 on the outermost pixels.
-cv::Mat cornerResponse(const cv::Mat& derivative) {
-  const int rows = derivative.rows, columns = derivative.cols;
+cv::Mat cornerResponse(const cv::Mat& image) {
+  const int rows = image.rows, columns = image.cols;
+  cv::Mat gx, gy;
+  cv::Scharr(image, gx, CV_16S, 1, 0);
+  cv::Scharr(image, gy, CV_16S, 0, 1);
   cv::Mat response(rows, columns, CV_32F, cv::Scalar(0));
   std::vector<RowSums> ring(3, RowSums(columns));
   for (int y = 0; y < rows; ++y) {
-    ring[static_cast<std::size_t>(y % 3)].set(derivative.ptr<short>(y), columns);
+    ring[static_cast<std::size_t>(y % 3)].set(gx.ptr<short>(y), gy.ptr<short>(y), columns);
     if (y < 2) continue;
     float* out = response.ptr<float>(y - 1);
     const RowSums &a = ring[0], &b = ring[1], &c = ring[2];
@@ -89,7 +93,7 @@ std::vector<cv::Point2f> CornerDetector::candidates(const ImagePyramid& pyramid)
   // Half resolution: a quarter of the work, less noise, and KLT follows the patch, not the pixel.
   const int level = std::min(1, pyramid.levels() - 1);
   const int scale = 1 << level;
-  const cv::Mat response = cornerResponse(pyramid.derivative(level));
+  const cv::Mat response = cornerResponse(pyramid.image(level));
   const int border = params_.border_px / scale + 2;
   std::vector<Candidate> maxima = blockMaxima(response, border, static_cast<float>(params_.min_quality));
   std::sort(maxima.begin(), maxima.end(), [](const Candidate& a, const Candidate& b) {

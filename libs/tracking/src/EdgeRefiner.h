@@ -24,7 +24,7 @@ class EdgeRefiner {
  public:
   explicit EdgeRefiner(const LineCamera& camera) : camera_(camera) {}
 
-  /// Samples profiles of the current image's derivative across `line` up to `search_px` to both sides, fits the line
+  /// Samples profiles of the current image's gradient across `line` up to `search_px` to both sides, fits the line
   /// robustly in undistorted coordinates, trims ends that have no edge and grows by up to `grow_px` where the edge goes
   /// on. An edge that full resolution does not show (motion blur) is looked for at half. Empty when less than half of
   /// the line lies on an edge.
@@ -32,7 +32,7 @@ class EdgeRefiner {
                                     double grow_px) const;
 
   /// Turns `line` so that its normal points to the brighter side; empty when the contrast is not of one sign.
-  std::optional<ImageLine> orient(const cv::Mat& derivative, const ImageLine& line) const;
+  std::optional<ImageLine> orient(const cv::Mat& image, const ImageLine& line) const;
 
  private:
   std::optional<RefinedLine> refineAtLevel(const ImagePyramid& pyramid, int level, const ImageLine& line,

@@ -3,6 +3,8 @@
 
 #include <opencv2/video/tracking.hpp>
 
+#include "PatchFlow.h"
+
 namespace lintel {
 
 ImagePyramid::ImagePyramid(const PyramidParams& params, int window_px) : params_(params), window_px_(window_px) {
@@ -18,7 +20,8 @@ void ImagePyramid::push(const GrayImage& image) {
     clahe_->apply(input, equalised);
     input = equalised;
   }
-  cv::buildOpticalFlowPyramid(input, pyramids_[frames_ % 2], cv::Size(window_px_, window_px_), params_.levels - 1, true,
+  const int border = patchBorder(window_px_);
+  cv::buildOpticalFlowPyramid(input, pyramids_[frames_ % 2], cv::Size(border, border), params_.levels - 1, false,
                               cv::BORDER_REFLECT_101, cv::BORDER_CONSTANT, false);
 }
 

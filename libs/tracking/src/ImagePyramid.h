@@ -11,25 +11,23 @@
 
 namespace lintel {
 
-/// The pyramids (images and derivatives) of the current frame and the one before, built once for points and lines.
+/// The pyramids of the current frame and the one before, built once for points and lines.
 class ImagePyramid {
  public:
-  /// `window_px`: the largest KLT window that will be used on it.
+  /// `window_px`: the largest window of optical flow that will be used on it.
   ImagePyramid(const PyramidParams& params, int window_px);
 
   /// Makes the current pyramid the previous one and builds that of `image`.
   void push(const GrayImage& image);
 
   bool hasPrevious() const { return frames_ > 1; }
-  /// For cv::calcOpticalFlowPyrLK: image, derivative, image, derivative, ...
+  /// Levels from full resolution on, with readable pixels around as followPatches() wants them.
   const std::vector<cv::Mat>& current() const { return pyramids_[frames_ % 2]; }
   const std::vector<cv::Mat>& previous() const { return pyramids_[(frames_ + 1) % 2]; }
 
-  const cv::Mat& image(int level = 0) const { return current()[2 * static_cast<std::size_t>(level)]; }
-  /// Scharr derivatives (int16 dx, dy) of a level, 32 times the grey levels per pixel.
-  const cv::Mat& derivative(int level = 0) const { return current()[2 * static_cast<std::size_t>(level) + 1]; }
+  const cv::Mat& image(int level = 0) const { return current()[static_cast<std::size_t>(level)]; }
   int windowPx() const { return window_px_; }
-  int levels() const { return static_cast<int>(current().size() / 2); }
+  int levels() const { return static_cast<int>(current().size()); }
 
  private:
   PyramidParams params_;

@@ -87,7 +87,7 @@ std::vector<ImageLine> LineDetector::detect(const ImagePyramid& pyramid) {
   for (const cv::Vec4f& s : detectRaw(pyramid)) {
     if (std::hypot(s[2] - s[0], s[3] - s[1]) < 0.3 * params_.min_length_px) continue;
     const ImageLine line{camera_.fromImage({s[0], s[1]}), camera_.fromImage({s[2], s[3]})};
-    if (const auto oriented = refiner_.orient(pyramid.derivative(), line)) pieces.push_back(*oriented);
+    if (const auto oriented = refiner_.orient(pyramid.image(), line)) pieces.push_back(*oriented);
   }
   return joined(std::move(pieces));
 }

@@ -3,15 +3,16 @@
 
 #include <algorithm>
 #include <cmath>
-#include <opencv2/video/tracking.hpp>
 
+#include "PatchFlow.h"
 #include "Prediction.h"
 #include "RobustLine.h"
 
 namespace lintel {
 namespace {
 
-constexpr double kMinEigenvalue = 1e-6;  ///< a patch on a plain edge has nearly none along it, and is welcome
+constexpr double kMinTexture = 1e-3;  ///< a patch on a plain edge has nearly none along it, and is welcome
+constexpr double kSettled_px = 0.03;     ///< of optical flow
 constexpr double kSpacing_px = 15;       ///< between samples, when the line is neither short nor long
 constexpr double kFitTolerance_px = 1.5;
 constexpr float kNear_px = 20;          ///< points nearer than this weigh alike
@@ -148,11 +149,8 @@ std::vector<PredictedLine> LineFlow::follow(const std::vector<CarriedLine>& line
                                             const Reach& reach) const {
   const Samples samples = sample(lines, gyro, points);
   std::vector<cv::Point2f> to = samples.guess;
-  std::vector<unsigned char> found;
-  const cv::TermCriteria criteria(cv::TermCriteria::COUNT | cv::TermCriteria::EPS, params_.max_iterations, 0.03);
-  cv::calcOpticalFlowPyrLK(pyramid.previous(), pyramid.current(), samples.from, to, found, cv::noArray(),
-                           cv::Size(reach.window_px, reach.window_px), std::min(reach.levels, pyramid.levels()) - 1,
-                           criteria, cv::OPTFLOW_USE_INITIAL_FLOW, kMinEigenvalue);
+  const PatchFlowParams flow{reach.window_px, reach.levels, params_.max_iterations, kSettled_px, kMinTexture};
+  const std::vector<unsigned char> found = followPatches(pyramid.previous(), pyramid.current(), samples.from, flow, to);
   std::vector<PredictedLine> followed;
   for (std::size_t i = 0; i < lines.size(); ++i)
     followed.push_back(fit(samples, i, lines[i].motion ? reach.jump_px : kMaxSurprise_px, to, found));

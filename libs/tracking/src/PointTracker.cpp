@@ -3,16 +3,17 @@
 
 #include <algorithm>
 #include <cmath>
-#include <opencv2/video/tracking.hpp>
 
 #include "DistanceGrid.h"
+#include "PatchFlow.h"
 #include "Prediction.h"
 #include "StageTimer.h"
 
 namespace lintel {
 namespace {
 
-constexpr double kMinEigenvalue = 1e-4;  ///< OpenCV's default: patches without texture fail
+constexpr double kSettled_px = 0.01;     ///< of optical flow
+constexpr double kMinTexture = 0.1;      ///< patches with less are lost [grey levels^2/px^2]
 constexpr int kSteadyLevels = 2;         ///< for points whose motion is known
 constexpr int kProven = 5;               ///< frames after which a point that looks like its patch needs no way back
 constexpr int kBackwardLevels = 1;       ///< the way back starts at the answer
@@ -36,6 +37,10 @@ PointTracker::PointTracker(const Rig& rig, const PointTrackerParams& params)
       detector_(params),
       drift_(params.drift_frames, twoViewParams(rig.camera, params.drift_px)),
       step_(rig.camera.meanFocal()) {}
+
+PatchFlowParams PointTracker::flowParams(int levels) const {
+  return {params_.window_px, levels, params_.max_iterations, kSettled_px, kMinTexture};
+}
 
 std::vector<cv::Point2f> PointTracker::pixels() const {
   std::vector<cv::Point2f> px;
@@ -72,9 +77,7 @@ void PointTracker::followFrom(const ImagePyramid& pyramid, const std::vector<std
     from.emplace_back(static_cast<float>(points_[i].px.x()), static_cast<float>(points_[i].px.y()));
     to.push_back(followed.px[i]);
   }
-  std::vector<unsigned char> found;
-  cv::calcOpticalFlowPyrLK(pyramid.previous(), pyramid.current(), from, to, found, cv::noArray(), window(),
-                           std::min(levels, pyramid.levels()) - 1, criteria(), cv::OPTFLOW_USE_INITIAL_FLOW, kMinEigenvalue);
+  const std::vector<unsigned char> found = followPatches(pyramid.previous(), pyramid.current(), from, flowParams(levels), to);
   const auto align = [&](std::size_t i) { return anchors_.align(points_[i].id, pyramid.image(), followed.px[i]); };
   std::vector<std::size_t> unsure, young;
   for (std::size_t k = 0; k < indices.size(); ++k) {
@@ -101,10 +104,8 @@ void PointTracker::followBack(const ImagePyramid& pyramid, const std::vector<std
     to.emplace_back(static_cast<float>(points_[i].px.x()), static_cast<float>(points_[i].px.y()));
   }
   const std::vector<cv::Point2f> before = to;
-  std::vector<unsigned char> found;
-  cv::calcOpticalFlowPyrLK(pyramid.current(), pyramid.previous(), from, to, found, cv::noArray(), window(),
-                           std::min(kBackwardLevels, pyramid.levels()) - 1, criteria(), cv::OPTFLOW_USE_INITIAL_FLOW,
-                           kMinEigenvalue);
+  const std::vector<unsigned char> found =
+      followPatches(pyramid.current(), pyramid.previous(), from, flowParams(kBackwardLevels), to);
   for (std::size_t k = 0; k < indices.size(); ++k)
     followed.fate[indices[k]] =
         found[k] && cv::norm(to[k] - before[k]) <= params_.forward_backward_px ? Fate::kAlive : Fate::kNotReturned;

@@ -11,6 +11,7 @@
 #include "GyroPrediction.h"
 #include "ImagePyramid.h"
 #include "PatchAnchors.h"
+#include "PatchFlow.h"
 #include "StepTranslation.h"
 #include "TwoViewMotion.h"
 #include "lintel/sensing/Rig.h"
@@ -63,8 +64,7 @@ class PointTracker {
   void rejectDrifting(const GyroPrediction& gyro, PointStatistics& statistics);
   void addNew(const ImagePyramid& pyramid, PointStatistics& statistics);
   std::vector<cv::Point2f> pixels() const;
-  cv::Size window() const { return {params_.window_px, params_.window_px}; }
-  cv::TermCriteria criteria() const { return {cv::TermCriteria::COUNT | cv::TermCriteria::EPS, params_.max_iterations, 0.01}; }
+  PatchFlowParams flowParams(int levels) const;
 
   PinholeRadtan camera_;
   PointTrackerParams params_;

@@ -113,7 +113,7 @@ TEST_F(EdgeRefinerTest, turnsTheNormalToTheBrighterSide) {
   show(testing::strips({strip_}));
   for (const bool reversed : {false, true}) {
     const ImageLine given = reversed ? line(0.4, -0.234, -0.4, -0.266) : line(-0.4, -0.266, 0.4, -0.234);
-    const auto oriented = refiner_.orient(pyramid_.derivative(), given);
+    const auto oriented = refiner_.orient(pyramid_.image(), given);
     ASSERT_TRUE(oriented);
     EXPECT_GT(oriented->normal().y(), 0.9);  // the strip lies below its upper edge
   }

@@ -62,7 +62,7 @@ struct LineTrackerParams {
   int sightings_before_use = 2;           ///< detections of a line before it gets an identity: chance lines stay out
   double min_length_px = 50;              ///< of a new line [Lim2021: 50 px]
   double keep_length_px = 30;             ///< a tracked line that gets shorter is lost
-  int window_px = 9;                      ///< side of the KLT patch of a sample on a line
+  int window_px = 8;                      ///< side of the KLT patch of a sample on a line; multiples of 8 are quickest
   int flow_levels = 1;                    ///< pyramid levels for the samples; those not found are looked for on all
   int max_iterations = 6;                 ///< of their KLT, per level
   int min_samples = 5;                    ///< on a short line
