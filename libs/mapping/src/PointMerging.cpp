@@ -30,11 +30,12 @@ struct Candidate {
 
 /// Whether the position of one is where the other was seen, in pixels: as a first look.
 bool projectsOnto(const KeyframeCameras& cameras, const PointRecord& a, const PointRecord& b, double most_px) {
+  const auto n = std::count_if(b.views.begin(), b.views.end(), [](const PointView& v) { return v.inlier; });
+  const double most = most_px * static_cast<double>(n);
   double sum = 0;
-  int n = 0;
-  for (const PointView& v : b.views)
-    if (v.inlier) sum += std::min(viewError(cameras, a.p_w, v), 100.0), ++n;
-  return n > 0 && sum <= most_px * n;
+  for (auto v = b.views.begin(); v != b.views.end() && sum <= most; ++v)
+    if (v->inlier) sum += std::min(viewError(cameras, a.p_w, *v), 100.0);
+  return n > 0 && sum <= most;
 }
 
 }  // namespace

@@ -28,20 +28,20 @@ bool normalise(Patch& patch) {
   return true;
 }
 
-}  // namespace
-
-bool PatchAnchors::sample(const cv::Mat& image, const Warp& warp, Patch& patch) {
-  const Eigen::Matrix2f& A = warp.A;
-  const float reach_x = (std::abs(A(0, 0)) + std::abs(A(0, 1))) * kHalf, reach_y = (std::abs(A(1, 0)) + std::abs(A(1, 1))) * kHalf;
-  if (!(warp.place.x - reach_x >= 0 && warp.place.y - reach_y >= 0 && warp.place.x + reach_x < image.cols - 1 &&
-        warp.place.y + reach_y < image.rows - 1))
+/// Grey levels of a square of 2 Half + 1 places a side, row by row, at place + A offset; false where it leaves the image.
+template <int Half>
+bool sampleSquare(const cv::Mat& image, const cv::Point2f& place, const Eigen::Matrix2f& A, float* grey) {
+  constexpr int kSide = 2 * Half + 1;
+  const float reach_x = (std::abs(A(0, 0)) + std::abs(A(0, 1))) * Half, reach_y = (std::abs(A(1, 0)) + std::abs(A(1, 1))) * Half;
+  if (!(place.x - reach_x >= 0 && place.y - reach_y >= 0 && place.x + reach_x < image.cols - 1 &&
+        place.y + reach_y < image.rows - 1))
     return false;
   // Loops over a row each, so that all but the fetching of grey levels is done for four pixels at once.
   std::array<float, kSide> x, y, fx, fy;
   std::array<int, kSide> ix, iy, a0, a1, b0, b1;
-  for (int v = -kHalf, row = 0; v <= kHalf; ++v, row += kSide) {
-    x[0] = warp.place.x + A(0, 1) * static_cast<float>(v) - A(0, 0) * kHalf;
-    y[0] = warp.place.y + A(1, 1) * static_cast<float>(v) - A(1, 0) * kHalf;
+  for (int v = -Half, row = 0; v <= Half; ++v, row += kSide) {
+    x[0] = place.x + A(0, 1) * static_cast<float>(v) - A(0, 0) * Half;
+    y[0] = place.y + A(1, 1) * static_cast<float>(v) - A(1, 0) * Half;
     for (std::size_t u = 1; u < kSide; ++u) x[u] = x[u - 1] + A(0, 0), y[u] = y[u - 1] + A(1, 0);
     for (std::size_t u = 0; u < kSide; ++u) {
       ix[u] = static_cast<int>(x[u]), iy[u] = static_cast<int>(y[u]);
@@ -55,23 +55,33 @@ bool PatchAnchors::sample(const cv::Mat& image, const Warp& warp, Patch& patch) 
     for (std::size_t u = 0; u < kSide; ++u) {
       const float top = static_cast<float>(a0[u]) + fx[u] * static_cast<float>(a1[u] - a0[u]);
       const float bottom = static_cast<float>(b0[u]) + fx[u] * static_cast<float>(b1[u] - b0[u]);
-      patch[row + static_cast<int>(u)] = top + fy[u] * (bottom - top);
+      grey[row + static_cast<int>(u)] = top + fy[u] * (bottom - top);
     }
   }
   return true;
 }
 
+}  // namespace
+
+bool PatchAnchors::sample(const cv::Mat& image, const Warp& warp, Patch& patch) {
+  return sampleSquare<kHalf>(image, warp.place, warp.A, patch.data());
+}
+
 bool PatchAnchors::makeAnchor(const cv::Mat& image, const cv::Point2f& px, Anchor& anchor) {
-  anchor = Anchor{};
-  Patch left, right, up, down;
-  if (!sample(image, {px}, anchor.patch) || !sample(image, {{px.x - 1, px.y}}, left) ||
-      !sample(image, {{px.x + 1, px.y}}, right) || !sample(image, {{px.x, px.y - 1}}, up) ||
-      !sample(image, {{px.x, px.y + 1}}, down))
-    return false;
+  anchor.A.setIdentity();
+  anchor.failures = 0;
+  constexpr int kAround = kSide + 2;  // gradients need a pixel more
+  Eigen::Matrix<float, kAround, kAround, Eigen::RowMajor> around;
+  if (!sampleSquare<kHalf + 1>(image, px, Eigen::Matrix2f::Identity(), around.data())) return false;
+  const auto shifted = [&](int dx, int dy) -> Patch {
+    const Eigen::Matrix<float, kSide, kSide, Eigen::RowMajor> square = around.block<kSide, kSide>(1 + dy, 1 + dx);
+    return Eigen::Map<const Patch>(square.data());
+  };
+  anchor.patch = shifted(0, 0);
   const float mean = anchor.patch.mean();
   const float norm = (anchor.patch.array() - mean).matrix().norm();
   if (!normalise(anchor.patch)) return false;
-  const Patch gx = (right - left) / (2 * norm), gy = (down - up) / (2 * norm);
+  const Patch gx = (shifted(1, 0) - shifted(-1, 0)) / (2 * norm), gy = (shifted(0, 1) - shifted(0, -1)) / (2 * norm);
   int k = 0;
   for (int v = -kHalf; v <= kHalf; ++v)
     for (int u = -kHalf; u <= kHalf; ++u, ++k) {

@@ -172,6 +172,14 @@ class Template {
   std::vector<short> mask_;     ///< of a row: 0 beyond window or image, else -1 as differences are left less right
 };
 
+/// Asks for the rows of a patch, so that they are in the cache when its turn comes: patches lie anywhere in the image.
+void prefetch(const cv::Mat& image, const cv::Point2f& centre, int window_px) {
+  Corner corner{};
+  if (!cornerOf(centre, window_px, image, corner)) return;
+  const unsigned char* row = image.data + (corner.y - 1) * static_cast<std::ptrdiff_t>(image.step[0]) + (corner.x - 1);
+  for (int y = 0; y < window_px + 2; ++y, row += image.step[0]) __builtin_prefetch(row);
+}
+
 /// Moves `place` to where the template is in `image`; false when it leaves the image.
 bool settle(const Template& patch, const cv::Mat& image, const PatchFlowParams& params, float determinant,
             cv::Point2f& place) {
@@ -214,7 +222,11 @@ std::vector<unsigned char> followPatches(const std::vector<cv::Mat>& from, const
   std::vector<unsigned char> found(px.size(), 0);
   Template patch(params.window_px);
   const int levels = std::min({params.levels, static_cast<int>(from.size()), static_cast<int>(to.size())});
-  for (std::size_t i = 0; i < px.size(); ++i)
+  for (std::size_t i = 0; i < px.size(); ++i) {
+    if (i + 1 < px.size()) {
+      prefetch(from[0], px[i + 1], params.window_px);
+      prefetch(to[0], moved[i + 1], params.window_px);
+    }
     for (int level = levels - 1; level >= 0; --level) {
       const auto l = static_cast<std::size_t>(level);
       const auto scale = static_cast<float>(1 << level);
@@ -228,6 +240,7 @@ std::vector<unsigned char> followPatches(const std::vector<cv::Mat>& from, const
       found[i] = settle(patch, to[l], params, determinant, place);
       moved[i] = place * scale;
     }
+  }
   return found;
 }
 

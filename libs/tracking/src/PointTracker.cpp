@@ -12,7 +12,7 @@
 namespace lintel {
 namespace {
 
-constexpr double kSettled_px = 0.01;     ///< of optical flow
+constexpr double kSettled_px = 0.03;     ///< of optical flow; patches settle old points
 constexpr double kMinTexture = 0.1;      ///< patches with less are lost [grey levels^2/px^2]
 constexpr int kSteadyLevels = 2;         ///< for points whose motion is known
 constexpr int kProven = 5;               ///< frames after which a point that looks like its patch needs no way back
