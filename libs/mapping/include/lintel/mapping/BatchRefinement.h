@@ -14,7 +14,7 @@ namespace lintel {
 /// The batch adjustment after the causal pass.
 struct RefinementParams {
   bool enabled = true;
-  int rounds = 3;              ///< of: estimate and merge landmarks, adjust, reject outliers
+  int rounds = 5;              ///< of: estimate and merge landmarks, adjust, reject outliers
   int max_iterations = 12;     ///< of a round
   bool lines = true;           ///< lines have residuals too; off: they follow the poses
   bool groups = true;          ///< lines of a parallel group share a direction, as far as the group is parallel
