@@ -40,7 +40,7 @@ class Weights {
 
  private:
   static cv::v_int16x8 pair(int first, int second) {
-    return cv::v_reinterpret_as_s16(cv::v_setall_s32((first & 0xffff) | (second << 16)));
+    return cv::v_reinterpret_as_s16(cv::v_setall_s32((first & 0xffff) + second * 0x10000));
   }
   static cv::v_int16x8 load(const unsigned char* p) { return cv::v_reinterpret_as_s16(cv::v_load_expand(p)); }
 

@@ -16,9 +16,9 @@ struct PatchFlowParams {
       0.1;  ///< a patch with a smaller eigenvalue of its mean structure tensor is lost [grey levels^2/px^2]
 };
 
-/// Follows patches of one image into another: iterative Lucas-Kanade, from coarse to fine [Bouguet, "Pyramidal
-/// Implementation of the Lucas Kanade Feature Tracker", 2001]. Gradients come from the patch itself, so that no
-/// derivative image is needed, and of the images only what the patches cover is touched.
+/// Follows patches of one image into another: iterative Lucas-Kanade, from coarse to fine [Bouguet2001]. Gradients
+/// come from the patch itself, so that no derivative image is needed, and of the images only what the patches cover is
+/// touched.
 ///
 /// `from`, `to`: levels of the pyramids, each the half of the one before, with at least patchBorder(window_px) readable
 /// pixels around. `px`: centres in `from`. `moved`: guesses of where they are in `to`; on return where they were found.
