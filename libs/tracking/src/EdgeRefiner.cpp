@@ -5,6 +5,8 @@
 #include <array>
 #include <cmath>
 
+#include "EdgeProfile.h"
+
 namespace lintel {
 namespace {
 
@@ -16,7 +18,6 @@ constexpr double kInlier_px = 0.8;         ///< of a sample's edge from the fitt
 constexpr double kMinSupport = 0.5;
 constexpr double kFloor_px = 0.25;  ///< systematic: blur, sampling, lens model
 constexpr double kBlur_px = 1;      ///< a blurred edge is predicted that much worse
-constexpr int kMaxReach = 8;        ///< profiles reach this far at most
 
 /// Edge candidates across the line at one place along it.
 struct Sample {
@@ -34,51 +35,8 @@ struct Fit {
   double at(double s) const { return alpha + beta * s; }
 };
 
-/// Gradients across an edge, one after the other, in 32 times grey levels a pixel.
-using Profile = std::array<float, 2 * kMaxReach + 3>;
-
-/// Gradients along `step` (`stride` pixels of `image`) at 2 reach + 3 places around `centre`, from the image itself:
-/// derivatives of the whole image would be four times as large and not be in the cache. Each grey level is the mean of
-/// two places half a pixel to both sides along the edge, and each gradient a difference over two steps, so that noise is
-/// as low as after Scharr's filter. The caller keeps the places within the image or the pixels readable around it.
-void gradientsAcross(const cv::Mat& image, const Eigen::Vector2d& centre, const Eigen::Vector2d& step, double stride,
-                     int reach, Profile& profile) {
-  constexpr int kMost = 2 * (2 * kMaxReach + 5);
-  std::array<float, kMost> x, y, grey;
-  std::array<int, kMost> a0, a1, b0, b1, ix, iy;
-  const int places = 2 * reach + 5, all = 2 * places;
-  const Eigen::Vector2f s = step.cast<float>(), beside = Eigen::Vector2f(-s.y(), s.x()) * static_cast<float>(0.5 / stride);
-  const Eigen::Vector2f first = centre.cast<float>() - static_cast<float>(reach + 2) * s;
-  for (int i = 0; i < places; ++i) {
-    const auto k = static_cast<std::size_t>(i), l = static_cast<std::size_t>(i + places);
-    const auto f = static_cast<float>(i);
-    x[k] = first.x() + f * s.x() - beside.x(), y[k] = first.y() + f * s.y() - beside.y();
-    x[l] = first.x() + f * s.x() + beside.x(), y[l] = first.y() + f * s.y() + beside.y();
-  }
-  // Loops apart, so that all but the fetching of grey levels is done for four places at once. Coordinates near the rim may
-  // be negative: they are shifted before they are cut off.
-  constexpr int kShift = 64;
-  for (std::size_t i = 0; i < static_cast<std::size_t>(all); ++i) {
-    ix[i] = static_cast<int>(x[i] + kShift) - kShift, iy[i] = static_cast<int>(y[i] + kShift) - kShift;
-    x[i] -= static_cast<float>(ix[i]), y[i] -= static_cast<float>(iy[i]);
-  }
-  const auto row = static_cast<std::ptrdiff_t>(image.step[0]);
-  for (std::size_t i = 0; i < static_cast<std::size_t>(all); ++i) {
-    const unsigned char *above = image.data + iy[i] * row + ix[i], *below = above + row;
-    a0[i] = above[0], a1[i] = above[1], b0[i] = below[0], b1[i] = below[1];
-  }
-  for (std::size_t i = 0; i < static_cast<std::size_t>(all); ++i) {
-    const float top = static_cast<float>(a0[i]) + x[i] * static_cast<float>(a1[i] - a0[i]);
-    const float bottom = static_cast<float>(b0[i]) + x[i] * static_cast<float>(b1[i] - b0[i]);
-    grey[i] = top + y[i] * (bottom - top);
-  }
-  const auto scale = static_cast<float>(8 / stride);  // 32, of two places, over two steps
-  const auto p = static_cast<std::size_t>(places);
-  for (std::size_t i = 0; i + 2 < p; ++i) profile[i] = scale * (grey[i + 2] + grey[i + 2 + p] - grey[i] - grey[i + p]);
-}
-
 /// Local maxima of the profile, the two strongest, by parabola.
-void findPeaks(const Profile& profile, int reach, Sample& sample) {
+void findPeaks(const EdgeProfile& profile, int reach, Sample& sample) {
   for (int i = 1; i <= 2 * reach + 1; ++i) {
     const auto k = static_cast<std::size_t>(i);
     const float here = profile[k], before = profile[k - 1], after = profile[k + 1];
@@ -131,7 +89,7 @@ class Profiler {
     }
     const Eigen::Vector2d px = camera_.toImage(u);
     if (!camera_.camera().contains(px, scale_ * ((reach + 1) * std::max(stride_, 1.0) + 2))) return false;
-    Profile profile;
+    EdgeProfile profile;
     gradientsAcross(image_, px / scale_, step_, stride_, reach, profile);  // of the level: there a step is scale px
     sample = {};
     sample.s = s;
@@ -314,7 +272,7 @@ std::optional<ImageLine> EdgeRefiner::orient(const cv::Mat& image, const ImageLi
     if (!camera_.sees(u, 4)) continue;
     const Eigen::Vector2d px = camera_.toImage(u), step = (camera_.imageJacobian(u) * n).normalized();
     float strongest = 0;
-    Profile profile;
+    EdgeProfile profile;
     gradientsAcross(image, px, step, 1, 1, profile);
     for (int k = 0; k < 5; ++k)
       if (const float g = profile[static_cast<std::size_t>(k)]; std::abs(g) > std::abs(strongest)) strongest = g;

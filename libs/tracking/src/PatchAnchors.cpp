@@ -7,6 +7,8 @@
 #include <array>
 #include <cmath>
 
+#include "GreyLevels.h"
+
 namespace lintel {
 namespace {
 
@@ -36,27 +38,12 @@ bool sampleSquare(const cv::Mat& image, const cv::Point2f& place, const Eigen::M
   if (!(place.x - reach_x >= 0 && place.y - reach_y >= 0 && place.x + reach_x < image.cols - 1 &&
         place.y + reach_y < image.rows - 1))
     return false;
-  // Loops over a row each, so that all but the fetching of grey levels is done for four pixels at once.
-  std::array<float, kSide> x, y, fx, fy;
-  std::array<int, kSide> ix, iy, a0, a1, b0, b1;
-  for (int v = -Half, row = 0; v <= Half; ++v, row += kSide) {
+  std::array<float, kSide> x, y;
+  for (int v = -Half; v <= Half; ++v, grey += kSide) {
     x[0] = place.x + A(0, 1) * static_cast<float>(v) - A(0, 0) * Half;
     y[0] = place.y + A(1, 1) * static_cast<float>(v) - A(1, 0) * Half;
     for (std::size_t u = 1; u < kSide; ++u) x[u] = x[u - 1] + A(0, 0), y[u] = y[u - 1] + A(1, 0);
-    for (std::size_t u = 0; u < kSide; ++u) {
-      ix[u] = static_cast<int>(x[u]), iy[u] = static_cast<int>(y[u]);
-      fx[u] = x[u] - static_cast<float>(ix[u]), fy[u] = y[u] - static_cast<float>(iy[u]);
-    }
-    for (std::size_t u = 0; u < kSide; ++u) {
-      const unsigned char* above = image.ptr<unsigned char>(iy[u]) + ix[u];
-      const unsigned char* below = above + image.step[0];
-      a0[u] = above[0], a1[u] = above[1], b0[u] = below[0], b1[u] = below[1];
-    }
-    for (std::size_t u = 0; u < kSide; ++u) {
-      const float top = static_cast<float>(a0[u]) + fx[u] * static_cast<float>(a1[u] - a0[u]);
-      const float bottom = static_cast<float>(b0[u]) + fx[u] * static_cast<float>(b1[u] - b0[u]);
-      grey[row + static_cast<int>(u)] = top + fy[u] * (bottom - top);
-    }
+    greyLevels<0>(image, kSide, x, y, grey);
   }
   return true;
 }

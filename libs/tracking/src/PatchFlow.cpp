@@ -53,7 +53,7 @@ struct Corner {
   float fx, fy;
 };
 
-/// Empty-handed (false) when the patch does not touch the image.
+/// False when the patch does not touch the image.
 bool cornerOf(const cv::Point2f& centre, int window_px, const cv::Mat& image, Corner& corner) {
   const float half = 0.5f * static_cast<float>(window_px - 1), x = centre.x - half, y = centre.y - half;
   const auto least = static_cast<float>(-window_px);
@@ -85,7 +85,7 @@ class Template {
         gy_(gx_.size()),
         mask_(static_cast<std::size_t>(columns_)) {}
 
-  /// Takes the patch from the image; its mean structure tensor is (xx xy; xy yy) [grey levels^2/px^2].
+  /// Takes the patch from the image.
   void take(const cv::Mat& image, const Corner& corner) {
     const Weights weights(corner.fx, corner.fy);
     const std::size_t step = image.step[0];
@@ -122,7 +122,7 @@ class Template {
     by = cv::v_reduce_sum(sum_y) / (kGreyScale * kGradientScale);
   }
 
-  float xx = 0, xy = 0, yy = 0;  ///< sums of the gradients' products [grey levels^2/px^2]
+  float xx = 0, xy = 0, yy = 0;  ///< of the structure tensor: sums of the gradients' products [grey levels^2/px^2]
 
  private:
   /// Scharr's gradients. In 16 bits: of differences over two pixels, 32 times grey levels, a quarter is weighted 3, 10,

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <opencv2/imgproc.hpp>
@@ -106,7 +107,7 @@ TEST(PatchFlowTest, startsAtTheGuess) {
   EXPECT_LT(cv::norm(place - px - cv::Point2f(40, 20.5)), 0.05);
 }
 
-TEST(PatchFlowTest, onAnEdgeMovesAcrossItAlone) {
+TEST(PatchFlowTest, onAnEdgeMovesAcrossIt) {
   const auto edge = [](double x, double) { return 128 + 90 * std::tanh((x - 100) / 1.5); };
   const cv::Point2f px(100, 80);
   cv::Point2f place = px;
@@ -161,8 +162,12 @@ TEST(PatchFlowTest, readsNoFurtherThanItsBorder) {
     std::vector<cv::Point2f> moved = px;
     const auto found =
         followPatches(bordered({0, 0}), bordered({0, 0}), px, PatchFlowParams{window_px, 1, 5, 0.01, 0.1}, moved);
-    for (std::size_t i = 0; i < px.size(); ++i)
-      if (found[i]) EXPECT_LT(cv::norm(moved[i] - px[i]), 0.05) << px[i];
+    EXPECT_GT(2 * std::count(found.begin(), found.end(), 1), static_cast<std::ptrdiff_t>(px.size()));
+    for (std::size_t i = 0; i < px.size(); ++i) {
+      if (found[i]) {
+        EXPECT_LT(cv::norm(moved[i] - px[i]), 0.05) << px[i];
+      }
+    }
   }
 }
 
