@@ -28,15 +28,13 @@ TEST_F(Pipeline, FiguresOfTheMapAgreeWithAnIndependentInstrument) {
   // the trajectory that the map belongs to
   const fs::path refined = folder_ / "out/trajectory_refined.tum";
   const fs::path trajectory = fs::exists(refined) ? refined : folder_ / "out/trajectory.tum";
-  const std::string command = shellWord(mapcheck) + " " + shellWord(recording()) + " " +
-                              shellWord(trajectory) + " " + shellWord(folder_ / "check.csv") + " > " +
-                              shellWord(folder_ / "mapcheck.out");
+  const std::string command = shellWord(mapcheck) + " " + shellWord(recording()) + " " + shellWord(trajectory) + " " +
+                              shellWord(folder_ / "check.csv") + " > " + shellWord(folder_ / "mapcheck.out");
   ASSERT_EQ(std::system(command.c_str()), 0);
   const std::string reference = "\n" + bytesOf(folder_ / "mapcheck.out");
   const auto figures = evaluate("out")["lines"];
-  for (const auto& [word, key] : {std::pair{"surface_precision", "surface_precision"},
-                                  {"edge_precision", "precision"},
-                                  {"recall", "recall"}}) {
+  for (const auto& [word, key] :
+       {std::pair{"surface_precision", "surface_precision"}, {"edge_precision", "precision"}, {"recall", "recall"}}) {
     const auto expected = numbersAfter(reference, word);
     ASSERT_GE(expected.size(), 3u) << word;
     for (std::size_t i = 0; i < 3; ++i) EXPECT_NEAR(figures[key][i], expected[i], 0.01 * expected[i] + 0.0005) << word;
@@ -44,8 +42,10 @@ TEST_F(Pipeline, FiguresOfTheMapAgreeWithAnIndependentInstrument) {
   const auto direction = numbersAfter(reference, "direction_error");
   ASSERT_GE(direction.size(), 3u);
   constexpr double kDegrees = 57.29577951308232;
-  EXPECT_NEAR(kDegrees * figures["all_matched"]["direction_median_rad"].get<double>(), direction[0], 0.01 * direction[0] + 0.005);
-  EXPECT_NEAR(kDegrees * figures["all_matched"]["direction_p90_rad"].get<double>(), direction[1], 0.01 * direction[1] + 0.005);
+  EXPECT_NEAR(kDegrees * figures["all_matched"]["direction_median_rad"].get<double>(), direction[0],
+              0.01 * direction[0] + 0.005);
+  EXPECT_NEAR(kDegrees * figures["all_matched"]["direction_p90_rad"].get<double>(), direction[1],
+              0.01 * direction[1] + 0.005);
   EXPECT_NEAR(figures["all_matched"]["distance_median_m"], direction[2], 0.01 * direction[2] + 0.0005);
   EXPECT_NEAR(figures["duplicates"], numbersAfter(reference, "duplicates")[0], 0.015);
 }
@@ -73,14 +73,16 @@ TEST_F(Pipeline, PagesOpenInABrowserWithoutAWord) {
   ASSERT_EQ(run("lintel-eval", "--quiet --trajectory " + shellWord(folder_ / "out/trajectory.tum") + " --groundtruth " +
                                    shellWord(recording()) + " --report " + shellWord(folder_ / "evaluation.html")),
             0);
-  for (const fs::path& page : {folder_ / "out/report.html", folder_ / "bench/report.html", folder_ / "evaluation.html"}) {
+  for (const fs::path& page :
+       {folder_ / "out/report.html", folder_ / "bench/report.html", folder_ / "evaluation.html"}) {
     if (!fs::exists(page)) continue;  // a test that was filtered out makes it
     const std::string text = bytesOf(page);
     for (const char* address : {"src=\"http", "href=\"http"}) EXPECT_THAT(text, Not(HasSubstr(address))) << page;
     const fs::path dom = folder_ / "page.dom", log = folder_ / "page.log";
-    const std::string command = "chromium --headless=new --no-sandbox --disable-gpu --enable-logging=stderr --user-data-dir=" +
-                                shellWord(folder_ / "profile") + " --dump-dom " + shellWord("file://" + page.string()) +
-                                " > " + shellWord(dom) + " 2> " + shellWord(log);
+    const std::string command =
+        "chromium --headless=new --no-sandbox --disable-gpu --enable-logging=stderr --user-data-dir=" +
+        shellWord(folder_ / "profile") + " --dump-dom " + shellWord("file://" + page.string()) + " > " +
+        shellWord(dom) + " 2> " + shellWord(log);
     ASSERT_EQ(std::system(command.c_str()), 0) << bytesOf(log);
     EXPECT_THAT(bytesOf(log), Not(HasSubstr("CONSOLE"))) << page;
     EXPECT_THAT(bytesOf(dom), HasSubstr("<figure>")) << page;

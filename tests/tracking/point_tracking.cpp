@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// point_tracking RECORDING [to_s]: how well points stay on what they follow. Every track is fitted with one place in the
-// world, poses and camera as the recording's ground truth says; what is left is the tracker's error. White noise is the
-// same at any age; drift grows with it.
+// point_tracking RECORDING [to_s]: how well points stay on what they follow. Every track is fitted with one place in
+// the world, poses and camera as the recording's ground truth says; what is left is the tracker's error. White noise is
+// the same at any age; drift grows with it.
 #include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
@@ -26,7 +26,8 @@ struct Sighting {
 };
 
 Pose poseAt(const std::vector<std::pair<std::int64_t, Pose>>& truth, std::int64_t t_ns) {
-  auto after = std::lower_bound(truth.begin(), truth.end(), t_ns, [](const auto& p, std::int64_t t) { return p.first < t; });
+  auto after =
+      std::lower_bound(truth.begin(), truth.end(), t_ns, [](const auto& p, std::int64_t t) { return p.first < t; });
   if (after == truth.begin()) return after->second;
   if (after == truth.end()) return std::prev(after)->second;
   const auto before = std::prev(after);
@@ -103,8 +104,10 @@ int run(int argc, char** argv) {
         if (r[i].norm() < 3 && r[i - 1].norm() < 3) correlated += r[i].dot(r[i - 1]), power += r[i].squaredNorm();
       }
     }
-    std::printf("tracks of %4zu and more frames: %5d  error median %.3f px  step median %.3f px  correlation of consecutive ones %.2f\n", kinds[k], n,
-                median(all), median(steps), correlated / std::max(power, 1e-9));
+    std::printf(
+        "tracks of %4zu and more frames: %5d  error median %.3f px  step median %.3f px  correlation of consecutive "
+        "ones %.2f\n",
+        kinds[k], n, median(all), median(steps), correlated / std::max(power, 1e-9));
   }
   return 0;
 }

@@ -58,7 +58,8 @@ Eigen::Vector3d turned(double angle) { return {std::cos(angle), std::sin(angle),
 int main() {
   const Eigen::Vector3d middle(0, 0, kDepth_m);
   for (const double baseline_m : {0.2, 0.5, 1.0}) {
-    std::printf("# baseline %.1f m: angle to the plane of degenerate lines [deg], direction [rad], distance [m]\n", baseline_m);
+    std::printf("# baseline %.1f m: angle to the plane of degenerate lines [deg], direction [rad], distance [m]\n",
+                baseline_m);
     for (double angle = 0.5; angle <= 60; angle *= 1.05) {
       const LineUncertainty u = uncertainty(baseline_m, 0, middle, turned(angle * kDegree));
       std::printf("%.3f %.6g %.6g\n", angle, u.direction_rad, u.distance_m);
@@ -67,7 +68,8 @@ int main() {
   }
   // a strut in the plane of the baseline, not parallel to it, and a line along the motion; the path swings out
   for (const double slope : {0.0, 40.0}) {
-    std::printf("# line in the plane of the baseline, %.0f deg to it: swing [m], direction [rad], distance [m]\n", slope);
+    std::printf("# line in the plane of the baseline, %.0f deg to it: swing [m], direction [rad], distance [m]\n",
+                slope);
     const Eigen::Vector3d direction(std::cos(slope * kDegree), 0, std::sin(slope * kDegree));
     for (double swing = 0.002; swing <= 0.5; swing *= 1.08) {
       const LineUncertainty u = uncertainty(1.0, swing, middle, direction);

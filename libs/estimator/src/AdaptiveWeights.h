@@ -12,8 +12,8 @@ struct ResidualScales {
   double points = 1, lines = 1;
 };
 
-/// From the medians of the residuals' norms at the window's present state, which outliers do not move; what the landmarks'
-/// own freedom takes away from the residuals is given back.
+/// From the medians of the residuals' norms at the window's present state, which outliers do not move; what the
+/// landmarks' own freedom takes away from the residuals is given back.
 ResidualScales residualScales(SlidingWindow& window, const std::vector<Factor>& factors);
 
 /// Moves the sigmas of points and lines a little towards what their residuals say [METHOD, adaptive weights]; never

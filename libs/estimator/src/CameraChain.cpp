@@ -21,7 +21,8 @@ void put(const Matrix& block, Eigen::Index row, Eigen::Index column, Eigen::Matr
   if (row >= column)
     H.block<Matrix::RowsAtCompileTime, Matrix::ColsAtCompileTime>(row, column, block.rows(), block.cols()) += block;
   else
-    H.block<Matrix::ColsAtCompileTime, Matrix::RowsAtCompileTime>(column, row, block.cols(), block.rows()) += block.transpose();
+    H.block<Matrix::ColsAtCompileTime, Matrix::RowsAtCompileTime>(column, row, block.cols(), block.rows()) +=
+        block.transpose();
 }
 
 }  // namespace
@@ -65,18 +66,21 @@ void CameraChain::addTail(const CameraEquations& cameras, Eigen::MatrixXd& H) co
     const auto place = static_cast<std::size_t>(k);
     SharedJacobian seen = SharedJacobian::Zero();  // this camera's rows, times the others' chains
     for (int j = 0; j < layout_.cameras; ++j)
-      seen.noalias() += cameraBlock(cameras, layout_.camera(k), layout_.camera(j)) * shared_[static_cast<std::size_t>(j)];
+      seen.noalias() +=
+          cameraBlock(cameras, layout_.camera(k), layout_.camera(j)) * shared_[static_cast<std::size_t>(j)];
     const auto below = cameras.H.block(rest, layout_.camera(k), n, kCameraTangent);
     by_pose.topRows<kShared>() = seen.transpose() * views_[place].d_pose;
     by_pose.bottomRows(n) = below.lazyProduct(views_[place].d_pose);
     for (const Piece& piece : tail_)
-      put(Eigen::Matrix<double, Eigen::Dynamic, kPoseTangent>(by_pose.middleRows(piece.at, piece.size)), piece.state, poses_[place], H);
+      put(Eigen::Matrix<double, Eigen::Dynamic, kPoseTangent>(by_pose.middleRows(piece.at, piece.size)), piece.state,
+          poses_[place], H);
     square.topLeftCorner<kShared, kShared>() += shared_[place].transpose() * seen;
     square.bottomLeftCorner(n, static_cast<Eigen::Index>(kShared)) += below.lazyProduct(shared_[place]);
   }
   for (const Piece& row : tail_)
     for (const Piece& column : tail_)
-      if (row.at >= column.at) put(Eigen::MatrixXd(square.block(row.at, column.at, row.size, column.size)), row.state, column.state, H);
+      if (row.at >= column.at)
+        put(Eigen::MatrixXd(square.block(row.at, column.at, row.size, column.size)), row.state, column.state, H);
 }
 
 void CameraChain::addGradient(const Eigen::VectorXd& b_cameras, Eigen::VectorXd& b) const {

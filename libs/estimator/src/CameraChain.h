@@ -15,8 +15,8 @@ struct StatePlaces {
   std::vector<Eigen::Index> directions;
 };
 
-/// The chain rule between the cameras' tangent spaces and the states: a camera hangs on its frame's pose, on the extrinsics
-/// and on the time offset; intrinsics and directions are states themselves. All equations: lower triangles.
+/// The chain rule between the cameras' tangent spaces and the states: a camera hangs on its frame's pose, on the
+/// extrinsics and on the time offset; intrinsics and directions are states themselves. All equations: lower triangles.
 class CameraChain {
  public:
   /// `layout` and `views` must outlive the chain.

@@ -26,9 +26,10 @@ namespace lintel {
 namespace {
 
 /// When a solve may end, see SolveLimits::min_move. After it mostly landmarks move, one by one: waiting for them took a
-/// quarter of the solver's time and made the trajectory a few per cent better on average (doc/results.md). Not where degenerate
-/// lines are used as they are, or not found (few are by the epipole): with `use` two of ten starts of `hall` failed. With a
-/// first damping of 1e-8 none did: the damping of the first step may hide how far weakly seen states still have to go.
+/// quarter of the solver's time and made the trajectory a few per cent better on average (doc/results.md). Not where
+/// degenerate lines are used as they are, or not found (few are by the epipole): with `use` two of ten starts of `hall`
+/// failed. With a first damping of 1e-8 none did: the damping of the first step may hide how far weakly seen states
+/// still have to go.
 double settledMove(const DegeneracyParams& degeneracy) {
   return degeneracy.lines == "use" || degeneracy.test == "epipole" ? 0 : 0.3;
 }
@@ -54,8 +55,11 @@ void propagate(const WindowFrame& from, const Preintegration& imu, Pose& T_w_b, 
 class Estimator::Impl {
  public:
   Impl(const Rig& rig, const EstimatorParams& params)
-      : rig_(rig), params_(params), noise_(scaledNoise(rig.imu_noise, params.factors)),
-        initializer_(params_, rig.T_b_c), window_(rig) {}
+      : rig_(rig),
+        params_(params),
+        noise_(scaledNoise(rig.imu_noise, params.factors)),
+        initializer_(params_, rig.T_b_c),
+        window_(rig) {}
 
   WindowUpdate process(const FrameTracks& tracks, const ImuBatch& imu);
   WindowUpdate finish();
@@ -89,10 +93,10 @@ class Estimator::Impl {
   bool tracking_ = false;
   std::uint64_t frames_seen_ = 0, poses_ = 0;
   FrameId next_frame_id_ = 0;
-  ImuBatch pending_imu_;                    // since the newest window frame
+  ImuBatch pending_imu_;  // since the newest window frame
   std::int64_t newest_t_ns_ = 0;
   int frames_without_points_ = 0;
-  Pose anchor_T_w_b_;                       // where a new start continues
+  Pose anchor_T_w_b_;  // where a new start continues
 };
 
 WindowUpdate Estimator::Impl::process(const FrameTracks& tracks, const ImuBatch& imu) {
@@ -176,7 +180,8 @@ void Estimator::Impl::initialise(WindowUpdate& update) {
 }
 
 void Estimator::Impl::moveToAnchor() {
-  const Pose T{Eigen::Quaterniond(Eigen::AngleAxisd(yawOf(anchor_T_w_b_.q), Eigen::Vector3d::UnitZ())), anchor_T_w_b_.p};
+  const Pose T{Eigen::Quaterniond(Eigen::AngleAxisd(yawOf(anchor_T_w_b_.q), Eigen::Vector3d::UnitZ())),
+               anchor_T_w_b_.p};
   for (WindowFrame& frame : window_.frames) {
     frame.pose = toBlock(T * frame.T_w_b());
     frame.motion.segment<3>(kVelocityAt) = T.q * velocityOf(frame.motion.data());
@@ -189,10 +194,10 @@ void Estimator::Impl::track(WindowUpdate& update) {
   newest.at_rest = isAtRest(window_, params_);
   const bool keyframe = secondNewestIsKeyframe(window_, params_);
   solve(update);
-  frames_without_points_ = pointsInNewest(window_) + linesInNewest(window_) < params_.failure.min_points &&
-                                   !window_.frames.back().at_rest
-                               ? frames_without_points_ + 1
-                               : 0;
+  frames_without_points_ =
+      pointsInNewest(window_) + linesInNewest(window_) < params_.failure.min_points && !window_.frames.back().at_rest
+          ? frames_without_points_ + 1
+          : 0;
   std::string failure = findFailure(window_, params_.failure, predicted);
   if (failure.empty() && frames_without_points_ > params_.failure.max_blind_frames)
     failure = "too few features are tracked";
@@ -218,7 +223,8 @@ void Estimator::Impl::solve(WindowUpdate& update) {
   factors.addLines(params_.degeneracy);
   const SolveLimits limits{params_.max_iterations, settledMove(params_.degeneracy)};
   update.iterations = solveWindow(window_, factors.factors(), params_.calibration, limits).iterations;
-  if (params_.factors.adaptive_weights) adaptSigmas(residualScales(window_, factors.factors()), configured_, params_.factors);
+  if (params_.factors.adaptive_weights)
+    adaptSigmas(residualScales(window_, factors.factors()), configured_, params_.factors);
   rejectOutliers(window_, params_.landmarks);
   for (auto& [id, track] : window_.lines)
     if (entersProblem(track, params_.degeneracy)) updateLineUncertainty(window_, params_, track);
@@ -227,8 +233,8 @@ void Estimator::Impl::solve(WindowUpdate& update) {
   for (std::size_t i = 1; i < window_.frames.size(); ++i) {
     WindowFrame& frame = window_.frames[i];
     const ImuBias bias = biasOf(window_.frames[i - 1].motion.data());
-    if (frame.imu && ((bias.gyro - frame.imu->bias().gyro).norm() > 0.01 ||
-                      (bias.accel - frame.imu->bias().accel).norm() > 0.1))
+    if (frame.imu &&
+        ((bias.gyro - frame.imu->bias().gyro).norm() > 0.01 || (bias.accel - frame.imu->bias().accel).norm() > 0.1))
       frame.imu->repropagate(bias);
   }
   countLandmarks(update);
@@ -314,7 +320,8 @@ WindowUpdate Estimator::Impl::finish() {
   return update;
 }
 
-Estimator::Estimator(const Rig& rig, const EstimatorParams& params) : impl_((checkParams(params), std::make_unique<Impl>(rig, params))) {}
+Estimator::Estimator(const Rig& rig, const EstimatorParams& params)
+    : impl_((checkParams(params), std::make_unique<Impl>(rig, params))) {}
 Estimator::~Estimator() = default;
 Estimator::Estimator(Estimator&&) noexcept = default;
 Estimator& Estimator::operator=(Estimator&&) noexcept = default;

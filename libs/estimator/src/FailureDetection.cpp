@@ -10,7 +10,8 @@ std::string findFailure(const SlidingWindow& window, const FailureParams& params
   const ImuBias bias = biasOf(newest.motion.data());
   if (bias.accel.norm() > params.max_bias_accel) return "the accelerometer bias is implausible";
   if (bias.gyro.norm() > params.max_bias_gyro) return "the gyroscope bias is implausible";
-  if ((T_w_b.p - predicted_T_w_b.p).norm() > params.max_step_m) return "the position jumped away from the IMU's prediction";
+  if ((T_w_b.p - predicted_T_w_b.p).norm() > params.max_step_m)
+    return "the position jumped away from the IMU's prediction";
   if (T_w_b.q.angularDistance(predicted_T_w_b.q) > params.max_step_rad)
     return "the orientation jumped away from the IMU's prediction";
   return {};

@@ -23,6 +23,7 @@ struct GravityAlignment {
 GravityAlignment alignGravity(const SlidingWindow& window);
 
 /// min x^T A x - 2 b^T x with |x_tail3| = gravity, x = (v, g): exposed for its test.
-Eigen::Matrix<double, 6, 1> solveWithGravityNorm(const Eigen::Matrix<double, 6, 6>& A, const Eigen::Matrix<double, 6, 1>& b);
+Eigen::Matrix<double, 6, 1> solveWithGravityNorm(const Eigen::Matrix<double, 6, 6>& A,
+                                                 const Eigen::Matrix<double, 6, 1>& b);
 
 }  // namespace lintel

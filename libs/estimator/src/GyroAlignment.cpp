@@ -15,8 +15,8 @@ namespace {
 
 /// The gyro's rotation between two frames and how it depends on the bias, and what both cameras see.
 struct FramePair {
-  Eigen::Quaterniond R_a_b = Eigen::Quaterniond::Identity();  // body axes
-  Eigen::Matrix3d d_theta_d_bias = Eigen::Matrix3d::Zero();   // right perturbation of R_a_b
+  Eigen::Quaterniond R_a_b = Eigen::Quaterniond::Identity();      // body axes
+  Eigen::Matrix3d d_theta_d_bias = Eigen::Matrix3d::Zero();       // right perturbation of R_a_b
   std::vector<std::pair<Eigen::Vector3d, Eigen::Vector3d>> rays;  // unit, body axes of a and b
 };
 
@@ -90,7 +90,8 @@ GyroAlignment alignGyro(const SlidingWindow& window) {
       for (std::size_t i = 0; i < normals.size(); ++i) {
         const double e = t.dot(normals[i]), scaled = e / kWidth_rad, w = 1 / (1 + scaled * scaled);
         // t . (a x dR u),  dR u = -R [u]x dtheta
-        const Eigen::RowVector3d J = -t.transpose() * skew(pair.rays[i].first) * R * skew(pair.rays[i].second) * d_theta;
+        const Eigen::RowVector3d J =
+            -t.transpose() * skew(pair.rays[i].first) * R * skew(pair.rays[i].second) * d_theta;
         const Eigen::RowVector2d Jt = normals[i].transpose() * across;
         H += w * J.transpose() * J;
         b += w * J.transpose() * e;

@@ -207,7 +207,8 @@ double Initializer::relativeScaleSigma(SlidingWindow& window) const {
   Eigen::Index total = 0, place = -1;
   const WindowFrame* farthest = &window.frames.back();
   for (const WindowFrame& f : window.frames)
-    if ((f.T_w_b().p - window.frames.front().T_w_b().p).norm() > (farthest->T_w_b().p - window.frames.front().T_w_b().p).norm())
+    if ((f.T_w_b().p - window.frames.front().T_w_b().p).norm() >
+        (farthest->T_w_b().p - window.frames.front().T_w_b().p).norm())
       farthest = &f;
   const int rows = prior->factor->num_residuals();
   for (const BlockKey& key : prior->blocks) {

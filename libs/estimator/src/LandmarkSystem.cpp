@@ -137,7 +137,8 @@ double lineariseOne(const DirectionSighting& s, const std::vector<CameraView>& v
   RowMajorMatrix plus(kDirectionSize, kDirectionTangent);
   manifoldOf(BlockKey::kDirection)->PlusJacobian(direction, plus.data());
   const Eigen::Matrix<double, 1, kDirectionTangent> Jd = l.d_direction * plus;
-  const Eigen::Index camera = layout.camera(s.camera), intrinsics = layout.intrinsics(), at = layout.direction(s.direction);
+  const Eigen::Index camera = layout.camera(s.camera), intrinsics = layout.intrinsics(),
+                     at = layout.direction(s.direction);
   const auto& Jc = l.d_camera;
   const auto& Ji = l.d_intrinsics;
   eq.H.block<kCameraTangent, kCameraTangent>(camera, camera) += weight * Jc.transpose() * Jc;
@@ -162,7 +163,8 @@ Eigen::Matrix<double, T, T> inverseRoot(Eigen::Matrix<double, T, T> H, double da
     if (llt.info() == Eigen::Success) return llt.matrixU().solve(Matrix::Identity());
   }
   const Eigen::SelfAdjointEigenSolver<Matrix> solver(H);
-  const auto root = solver.eigenvalues().unaryExpr([](double v) { return v > kNoInformation ? 1 / std::sqrt(v) : 0.0; });
+  const auto root =
+      solver.eigenvalues().unaryExpr([](double v) { return v > kNoInformation ? 1 / std::sqrt(v) : 0.0; });
   return solver.eigenvectors() * root.asDiagonal();
 }
 
@@ -181,7 +183,8 @@ void eliminateOne(LandmarkBlock<Kind>& landmark, double damping, const CameraLay
     const Eigen::Index at = layout.camera(a.camera);
     for (std::size_t j = 0; j <= i; ++j) {
       const auto& other = landmark.sightings[j];
-      eq.H.block<kCameraTangent, kCameraTangent>(at, layout.camera(other.camera)).noalias() -= a.Y * other.Y.transpose();
+      eq.H.block<kCameraTangent, kCameraTangent>(at, layout.camera(other.camera)).noalias() -=
+          a.Y * other.Y.transpose();
     }
     eq.H.block<kIntrinsicsSize, kCameraTangent>(intrinsics, at).noalias() -= Yi * a.Y.transpose();
     eq.b.segment<kCameraTangent>(at).noalias() -= a.Y * y;
@@ -208,7 +211,8 @@ double backSubstituteOne(LandmarkBlock<Kind>& landmark, const Eigen::VectorXd& c
     y += s.Y.transpose() * camera_step.segment<kCameraTangent>(layout.camera(s.camera));
   y += landmark.Y_intrinsics.transpose() * camera_step.segment<kIntrinsicsSize>(layout.intrinsics());
   if (landmark.structural)
-    y += landmark.Y_direction.transpose() * camera_step.segment<kDirectionTangent>(layout.direction(landmark.direction));
+    y +=
+        landmark.Y_direction.transpose() * camera_step.segment<kDirectionTangent>(layout.direction(landmark.direction));
   landmark.step = -landmark.inverse_root * y;
   const auto damped = damping * landmark.H.diagonal().cwiseMax(kLeastDamping);
   return 0.5 * landmark.step.dot(damped.cwiseProduct(landmark.step) - landmark.b);
@@ -217,9 +221,12 @@ double backSubstituteOne(LandmarkBlock<Kind>& landmark, const Eigen::VectorXd& c
 }  // namespace
 
 bool LandmarkSystem::isVision(const Factor& factor) {
-  return std::any_of(factor.blocks.begin(), factor.blocks.end(), [](const BlockKey& key) {
-    return key.kind == BlockKey::kPoint || key.kind == BlockKey::kLine || key.kind == BlockKey::kDirection;
-  }) && dynamic_cast<const PriorFactor*>(factor.cost) == nullptr;
+  return std::any_of(factor.blocks.begin(), factor.blocks.end(),
+                     [](const BlockKey& key) {
+                       return key.kind == BlockKey::kPoint || key.kind == BlockKey::kLine ||
+                              key.kind == BlockKey::kDirection;
+                     }) &&
+         dynamic_cast<const PriorFactor*>(factor.cost) == nullptr;
 }
 
 int LandmarkSystem::directionOf(SlidingWindow& window, const BlockKey& key) {
@@ -243,14 +250,16 @@ LandmarkSystem::LandmarkSystem(SlidingWindow& window, const std::vector<Factor>&
   };
   for (const Factor& factor : factors) {
     if (!isVision(factor)) continue;
-    if (factor.blocks.front().kind == BlockKey::kPose) seeing_[static_cast<std::size_t>(camera_of.at(factor.blocks.front().id))] = true;
+    if (factor.blocks.front().kind == BlockKey::kPose)
+      seeing_[static_cast<std::size_t>(camera_of.at(factor.blocks.front().id))] = true;
     if (const BlockKey& key = factor.blocks.back(); factor.blocks.front().kind == BlockKey::kLine) {  // structural
       auto& line = blockOf(lines_, line_at, factor.blocks.front());
       line.structural = &factor;
       line.direction = directionOf(window, key);
     } else if (key.kind == BlockKey::kDirection) {
       const int camera = camera_of.at(factor.blocks.front().id);
-      vanishing_.push_back({static_cast<const VanishingFactor*>(factor.cost), factor.loss, camera, directionOf(window, key)});
+      vanishing_.push_back(
+          {static_cast<const VanishingFactor*>(factor.cost), factor.loss, camera, directionOf(window, key)});
       motions_[static_cast<std::size_t>(camera)] = vanishing_.back().factor->motion();
     } else if (const int camera = camera_of.at(factor.blocks.front().id); key.kind == BlockKey::kPoint) {
       auto& point = blockOf(points_, point_at, key);
@@ -269,7 +278,8 @@ LandmarkSystem::LandmarkSystem(SlidingWindow& window, const std::vector<Factor>&
 std::set<BlockKey> LandmarkSystem::states(const SlidingWindow& window) const {
   std::set<BlockKey> states;
   for (std::size_t k = 0; k < seeing_.size(); ++k)
-    if (seeing_[k]) states.insert({{BlockKey::kPose, window.frames[k].id}, {BlockKey::kExtrinsics, 0}, {BlockKey::kCorrection, 0}});
+    if (seeing_[k])
+      states.insert({{BlockKey::kPose, window.frames[k].id}, {BlockKey::kExtrinsics, 0}, {BlockKey::kCorrection, 0}});
   for (const auto& [id, place] : layout_.directions) states.insert({BlockKey::kDirection, id});
   return states;
 }
@@ -305,7 +315,8 @@ double LandmarkSystem::backSubstitute(const Eigen::VectorXd& camera_step, double
 void LandmarkSystem::apply(std::vector<double>& saved) {
   const auto move = [&](auto& landmark, BlockKey::Kind kind, int size) {
     saved.insert(saved.end(), landmark.block, landmark.block + size);
-    manifoldOf(kind)->Plus(saved.data() + saved.size() - static_cast<std::size_t>(size), landmark.step.data(), landmark.block);
+    manifoldOf(kind)->Plus(saved.data() + saved.size() - static_cast<std::size_t>(size), landmark.step.data(),
+                           landmark.block);
   };
   for (auto& point : points_) move(point, BlockKey::kPoint, kPointSize);
   for (auto& line : lines_) move(line, BlockKey::kLine, kLineSize);

@@ -51,7 +51,8 @@ struct LandmarkBlock {
   struct Sighting {
     const typename Kind::Factor* factor = nullptr;
     int camera = 0;
-    CameraPart W = CameraPart::Zero(), Y = CameraPart::Zero();  ///< camera-landmark block of H; the same times the inverse root of the landmark's block
+    CameraPart W = CameraPart::Zero(), Y = CameraPart::Zero();  ///< camera-landmark block of H; the same times the
+                                                                ///< inverse root of the landmark's block
   };
 
   double* block = nullptr;
@@ -87,7 +88,9 @@ class LandmarkSystem {
   /// The states that its residuals depend on.
   std::set<BlockKey> states(const SlidingWindow& window) const;
 
-  const FrameMotion& motion(int camera) const { return motions_[static_cast<std::size_t>(camera)]; }  ///< as its factors say
+  const FrameMotion& motion(int camera) const {
+    return motions_[static_cast<std::size_t>(camera)];
+  }  ///< as its factors say
   double cost(const std::vector<CameraView>& views) const;
   double linearise(const std::vector<CameraView>& views);
 
@@ -101,7 +104,7 @@ class LandmarkSystem {
   /// The landmarks' reaction to a step of the cameras; their part of the model's decrease.
   double backSubstitute(const Eigen::VectorXd& camera_step, double damping);
 
-  void apply(std::vector<double>& saved);              ///< appends the former values
+  void apply(std::vector<double>& saved);  ///< appends the former values
   std::size_t revert(const std::vector<double>& saved, std::size_t at);
 
  private:

@@ -25,13 +25,15 @@ LineUncertainty uncertaintyOf(const OrthonormalLine& line, const Eigen::Matrix4d
   return {worst(direction), worst(position)};
 }
 
-double planeSigma(const SlidingWindow& window, const FactorParams& params, const LineSighting& s, const Eigen::Vector3d& d_w) {
+double planeSigma(const SlidingWindow& window, const FactorParams& params, const LineSighting& s,
+                  const Eigen::Vector3d& d_w) {
   const Eigen::Vector3d d_c = window.T_w_c(window.frame(s.frame)).q.conjugate() * d_w;
   const Eigen::Vector3d start = s.start.corrected(window.correction.data()).homogeneous().normalized();
   const Eigen::Vector3d end = s.end.corrected(window.correction.data()).homogeneous().normalized();
   // each end moves across the line by sigma: the plane turns about the other one
   const double sigma_ray = params.line_sigma_px * s.sigma_px / window.camera().meanFocal();
-  return sigma_ray * std::hypot(start.cross(d_c).norm(), end.cross(d_c).norm()) / std::max(start.cross(end).norm(), 1e-6);
+  return sigma_ray * std::hypot(start.cross(d_c).norm(), end.cross(d_c).norm()) /
+         std::max(start.cross(end).norm(), 1e-6);
 }
 
 double epipoleAngle(const SlidingWindow& window, const LineTrack& track) {
@@ -50,7 +52,8 @@ double epipoleAngle(const SlidingWindow& window, const LineTrack& track) {
   return largest;
 }
 
-LineVerdict judgeLine(const SlidingWindow& window, const DegeneracyParams& params, const LineTrack& track, double depth_m) {
+LineVerdict judgeLine(const SlidingWindow& window, const DegeneracyParams& params, const LineTrack& track,
+                      double depth_m) {
   if (params.test != "observability" && epipoleAngle(window, track) < params.max_epipole_angle_rad)
     return LineVerdict::kThroughEpipole;
   if (params.test == "epipole") return LineVerdict::kGood;

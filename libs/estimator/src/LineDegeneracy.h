@@ -28,7 +28,8 @@ double planeSigma(const SlidingWindow& window, const FactorParams& params, const
 double epipoleAngle(const SlidingWindow& window, const LineTrack& track);
 
 /// What to think of a triangulated line whose sigmas are up to date; `depth_m`: of its middle in the newest sighting.
-LineVerdict judgeLine(const SlidingWindow& window, const DegeneracyParams& params, const LineTrack& track, double depth_m);
+LineVerdict judgeLine(const SlidingWindow& window, const DegeneracyParams& params, const LineTrack& track,
+                      double depth_m);
 
 /// Whether a line is part of the problem: good ones, and degenerate ones as `params.lines` says.
 bool entersProblem(const LineTrack& track, const DegeneracyParams& params);

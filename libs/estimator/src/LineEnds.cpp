@@ -9,10 +9,10 @@ namespace lintel {
 
 namespace {
 
-constexpr double kBorder_px = 12;            // nearer to the image's border an end may be cut
-constexpr double kSigmaAlong_px = 2;         // of an end along its line, at best
-constexpr double kMaxError_px = 3;           // rms; above, the end is no fixed point
-constexpr double kMaxRelativeSigma = 0.15;   // of the depth
+constexpr double kBorder_px = 12;           // nearer to the image's border an end may be cut
+constexpr double kSigmaAlong_px = 2;        // of an end along its line, at best
+constexpr double kMaxError_px = 3;          // rms; above, the end is no fixed point
+constexpr double kMaxRelativeSigma = 0.15;  // of the depth
 constexpr std::size_t kLeastSightings = 4;
 
 struct SeenPoint {

@@ -16,7 +16,8 @@ enum class EndsVerdict {
 /// A segment in the world from its end points, as far as these are real corners.
 struct SeenEnds {
   EndsVerdict verdict = EndsVerdict::kNoCorners;
-  Eigen::Vector3d start_w = Eigen::Vector3d::Zero(), end_w = Eigen::Vector3d::Zero();  ///< kCorners only, as what follows
+  Eigen::Vector3d start_w = Eigen::Vector3d::Zero(),
+                  end_w = Eigen::Vector3d::Zero();  ///< kCorners only, as what follows
   double sigma_direction_rad = 0;
   double sigma_distance_m = 0;  ///< of the middle
 };

@@ -63,7 +63,8 @@ LineNormal normalEquations(const SlidingWindow& window, const FactorParams& para
   return normal;
 }
 
-void refine(const SlidingWindow& window, const FactorParams& params, LineTrack& track, const KnownDirection* known = nullptr) {
+void refine(const SlidingWindow& window, const FactorParams& params, LineTrack& track,
+            const KnownDirection* known = nullptr) {
   const LineManifold manifold;
   LineNormal now = normalEquations(window, params, track, track.line, known);
   double damping = 1e-3;
@@ -88,12 +89,14 @@ void refine(const SlidingWindow& window, const FactorParams& params, LineTrack& 
 }
 
 /// The ends of a sighting on the line, in the camera's frame. How many of them are in front of it.
-int endsInCamera(const SlidingWindow& window, const LineTrack& track, const LineSighting& s, Eigen::Vector3d ends_c[2]) {
+int endsInCamera(const SlidingWindow& window, const LineTrack& track, const LineSighting& s,
+                 Eigen::Vector3d ends_c[2]) {
   const Pose T_c_w = window.T_w_c(window.frame(s.frame)).inverse();
   const PluckerLine line = lineFromBlock(track.line.data()).plucker();
   const Eigen::Vector3d d_c = T_c_w.q * line.d, p_c = T_c_w * (track.origin_w + line.nearestPoint());
   const PluckerLine line_c{p_c.cross(d_c), d_c};
-  const Eigen::Vector2d seen[2] = {s.start.corrected(window.correction.data()), s.end.corrected(window.correction.data())};
+  const Eigen::Vector2d seen[2] = {s.start.corrected(window.correction.data()),
+                                   s.end.corrected(window.correction.data())};
   int in_front = 0;
   for (int k = 0; k < 2; ++k) in_front += closestPointToRay(line_c, seen[k], ends_c[k]) && ends_c[k].z() >= 0.05;
   return in_front;
@@ -170,7 +173,8 @@ double lineError(const SlidingWindow& window, const LineTrack& track) {
 void updateLineUncertainty(const SlidingWindow& window, const EstimatorParams& params, LineTrack& track) {
   // after marginalisation has used its sightings a line lives on with what was known
   if (!track.placed) return;
-  if (track.verdict != LineVerdict::kNone && static_cast<int>(track.sightings.size()) < params.landmarks.line_min_observations)
+  if (track.verdict != LineVerdict::kNone &&
+      static_cast<int>(track.sightings.size()) < params.landmarks.line_min_observations)
     return;
   const LineNormal normal = normalEquations(window, params.factors, track, track.line);
   const SeenMiddle middle = middleOf(window, track);
@@ -193,7 +197,8 @@ bool triangulateLine(const SlidingWindow& window, const EstimatorParams& params,
   // A line that is far from being determined is not worth refining: its cheap estimate says so already.
   updateLineUncertainty(window, params, track);
   constexpr double kHopeless = 3;
-  if (track.sigma_direction_rad > kHopeless * params.degeneracy.max_sigma_direction_rad) return track.triangulated = true;
+  if (track.sigma_direction_rad > kHopeless * params.degeneracy.max_sigma_direction_rad)
+    return track.triangulated = true;
   refine(window, params.factors, track);
   if (!(lineError(window, track) < params.landmarks.line_max_error_px)) {
     if (!track.degenerate()) track.verdict = LineVerdict::kNone;  // it is no line; a degenerate one may still be
@@ -204,9 +209,11 @@ bool triangulateLine(const SlidingWindow& window, const EstimatorParams& params,
   return true;
 }
 
-bool triangulateTied(const SlidingWindow& window, const EstimatorParams& params, LineTrack& track, const Eigen::Vector3d& d_w) {
-  // Of the depth. A distance known worse than that follows the noise of the direction, and drags the poses along: in the
-  // scene of rails the trajectory was 17 % worse than without them at 1, 3 % at 0.05. Beyond, only the direction counts.
+bool triangulateTied(const SlidingWindow& window, const EstimatorParams& params, LineTrack& track,
+                     const Eigen::Vector3d& d_w) {
+  // Of the depth. A distance known worse than that follows the noise of the direction, and drags the poses along: in
+  // the scene of rails the trajectory was 17 % worse than without them at 1, 3 % at 0.05. Beyond, only the direction
+  // counts.
   constexpr double kMaxRelativeSigma = 0.05;
   const KnownDirection known{d_w, params.degeneracy.structural_sigma_rad};
   LineTrack tied = track;

@@ -17,7 +17,8 @@ bool triangulateLine(const SlidingWindow& window, const EstimatorParams& params,
 
 /// The same for a line whose direction is known from its group, starting at `track.line`. Returns false, and leaves the
 /// track as it was, when its distance does not become known or the line does not fit.
-bool triangulateTied(const SlidingWindow& window, const EstimatorParams& params, LineTrack& track, const Eigen::Vector3d& d_w);
+bool triangulateTied(const SlidingWindow& window, const EstimatorParams& params, LineTrack& track,
+                     const Eigen::Vector3d& d_w);
 
 /// Triangulates every track with enough sightings that is not yet, or whose line was degenerate so far.
 void triangulateLines(SlidingWindow& window, const EstimatorParams& params);

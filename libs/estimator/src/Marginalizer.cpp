@@ -30,8 +30,8 @@ void eliminate(NormalEquations& eq, Eigen::Index at, Eigen::Index size) {
   eq.H.bottomRightCorner(rest, rest) -= gain * Hbm.transpose();
 }
 
-/// The prior with the cost 1/2 dx' H dx + b' dx: H = A' A by Cholesky's decomposition with pivots. Rows without information,
-/// or with no more than what rounding leaves, stay out.
+/// The prior with the cost 1/2 dx' H dx + b' dx: H = A' A by Cholesky's decomposition with pivots. Rows without
+/// information, or with no more than what rounding leaves, stay out.
 WindowPrior priorOf(std::vector<BlockKey> keys, std::vector<PriorBlock> blocks, const Eigen::MatrixXd& H,
                     const Eigen::VectorXd& b) {
   constexpr double kRounding = 1e-12;  // of what a state had before the others were taken from it
@@ -70,7 +70,8 @@ std::optional<WindowPrior> marginalise(SlidingWindow& window, const std::vector<
   std::vector<PriorBlock> blocks;
   for (std::size_t i = kept; i < eq.blocks.size(); ++i) {
     const auto manifold = manifoldOf(eq.blocks[i].kind);
-    blocks.push_back({manifold, Eigen::Map<const Eigen::VectorXd>(window.block(eq.blocks[i]), manifold->AmbientSize())});
+    blocks.push_back(
+        {manifold, Eigen::Map<const Eigen::VectorXd>(window.block(eq.blocks[i]), manifold->AmbientSize())});
   }
   return priorOf({eq.blocks.begin() + static_cast<std::ptrdiff_t>(kept), eq.blocks.end()}, std::move(blocks),
                  eq.H.bottomRightCorner(size, size), eq.b.tail(size));

@@ -15,19 +15,21 @@ namespace lintel {
 
 namespace {
 
-constexpr double kKnown_rad = 0.03;       // a direction known this well is a witness
-constexpr double kSame_rad = 0.035;       // directions closer than this are taken as one
-constexpr double kApart_rad = 0.10;       // a new direction is at least this far from the others
-constexpr double kLeastSigma_rad = 0.004; // of an observation plane: poses and calibration have errors too
-constexpr double kByChance = 0.05;        // share of arbitrary lines whose planes contain a given direction, at most
+constexpr double kKnown_rad = 0.03;        // a direction known this well is a witness
+constexpr double kSame_rad = 0.035;        // directions closer than this are taken as one
+constexpr double kApart_rad = 0.10;        // a new direction is at least this far from the others
+constexpr double kLeastSigma_rad = 0.004;  // of an observation plane: poses and calibration have errors too
+constexpr double kByChance = 0.05;         // share of arbitrary lines whose planes contain a given direction, at most
 constexpr double kContradiction_rad = 0.08, kContradiction = 2.5;  // of ends with a direction; in standard deviations
-constexpr FrameId kForget = 100;          // window frames after which an unused direction is forgotten
+constexpr FrameId kForget = 100;  // window frames after which an unused direction is forgotten
 
 double angleBetween(const Eigen::Vector3d& a, const Eigen::Vector3d& b) {  // unit vectors without sign
   return std::asin(std::min(1.0, a.cross(b).norm()));
 }
 
-Eigen::Vector3d directionOf(const LineTrack& track) { return lineFromBlock(track.line.data()).plucker().d.normalized(); }
+Eigen::Vector3d directionOf(const LineTrack& track) {
+  return lineFromBlock(track.line.data()).plucker().d.normalized();
+}
 
 struct Rays {
   Eigen::Vector3d start_w, end_w;  // unit
@@ -40,15 +42,17 @@ Rays raysOf(const SlidingWindow& window, const LineSighting& s) {
 }
 
 bool isMember(const LineTrack& track) { return track.triangulated && track.group != 0; }
-bool isCandidate(const LineTrack& track) { return track.group == 0 && track.degenerate() && track.sightings.size() > 1; }
+bool isCandidate(const LineTrack& track) {
+  return track.group == 0 && track.degenerate() && track.sightings.size() > 1;
+}
 bool isWitness(const LineTrack& track) {
   return track.triangulated && !track.degenerate() && track.sigma_direction_rad < kKnown_rad;
 }
 
-/// Whether a degenerate line may have this direction: its planes contain it, and its end points have never contradicted.
-/// Ends that may still do so are waited for.
-bool mayBeParallel(const SlidingWindow& window, const EstimatorParams& params, LineTrack& track, const Eigen::Vector3d& d_w,
-                   double max_misfit) {
+/// Whether a degenerate line may have this direction: its planes contain it, and its end points have never
+/// contradicted. Ends that may still do so are waited for.
+bool mayBeParallel(const SlidingWindow& window, const EstimatorParams& params, LineTrack& track,
+                   const Eigen::Vector3d& d_w, double max_misfit) {
   if (track.alone || directionMisfit(window, params, track, d_w) > max_misfit) return false;
   const SeenEnds ends = triangulateEnds(window, track);
   if (ends.verdict == EndsVerdict::kCorners) {
@@ -69,7 +73,8 @@ double medianDepth(const SlidingWindow& window) {
 }
 
 /// Gives a line the group's direction within its newest plane, and the depth of its ends where they show one.
-void join(const SlidingWindow& window, LineTrack& track, std::uint64_t group, const Eigen::Vector3d& d_w, double depth) {
+void join(const SlidingWindow& window, LineTrack& track, std::uint64_t group, const Eigen::Vector3d& d_w,
+          double depth) {
   const LineSighting& newest = track.sightings.back();
   const Rays rays = raysOf(window, newest);
   const Pose T_w_c = window.T_w_c(window.frame(newest.frame));
@@ -112,8 +117,8 @@ void release(SlidingWindow& window, const EstimatorParams& params, double depth)
   for (auto& [id, track] : window.lines) {
     if (track.group == 0) continue;
     if (static_cast<int>(track.sightings.size()) < params.landmarks.line_min_observations) continue;
-    const bool fits = mayBeParallel(window, params, track, window.directions.at(track.group).d_w,
-                                    1.5 * params.degeneracy.max_misfit);
+    const bool fits =
+        mayBeParallel(window, params, track, window.directions.at(track.group).d_w, 1.5 * params.degeneracy.max_misfit);
     if (fits && !standsAlone(window, params, track)) {
       place(window, params, track, depth);
     } else {
@@ -150,8 +155,8 @@ std::vector<Eigen::Vector3d> possibleDirections(const SlidingWindow& window) {
 }
 
 struct Support {
-  double score = 0;               // lines that agree, less what chance gives
-  int candidates = 0;             // degenerate ones
+  double score = 0;    // lines that agree, less what chance gives
+  int candidates = 0;  // degenerate ones
   Eigen::Vector3d d_w = Eigen::Vector3d::Zero();
 };
 
@@ -188,8 +193,9 @@ Support supportOf(SlidingWindow& window, const EstimatorParams& params, const Ei
 void found(SlidingWindow& window, const EstimatorParams& params, double depth) {
   Support best;
   for (const Eigen::Vector3d& d_w : possibleDirections(window)) {
-    const bool is_new = std::all_of(window.directions.begin(), window.directions.end(),
-                                    [&](const auto& entry) { return angleBetween(entry.second.d_w, d_w) > kApart_rad; });
+    const bool is_new = std::all_of(window.directions.begin(), window.directions.end(), [&](const auto& entry) {
+      return angleBetween(entry.second.d_w, d_w) > kApart_rad;
+    });
     if (!is_new) continue;
     const Support support = supportOf(window, params, d_w);
     if (support.candidates > 0 && support.score > best.score) best = support;
@@ -207,7 +213,8 @@ void forget(SlidingWindow& window) {
     if (isMember(track)) window.directions.at(track.group).last_used = newest;
   for (auto it = window.directions.begin(); it != window.directions.end();) {
     const bool in_prior = std::any_of(window.priors.begin(), window.priors.end(), [&](const WindowPrior& prior) {
-      return std::find(prior.blocks.begin(), prior.blocks.end(), BlockKey{BlockKey::kDirection, it->first}) != prior.blocks.end();
+      return std::find(prior.blocks.begin(), prior.blocks.end(), BlockKey{BlockKey::kDirection, it->first}) !=
+             prior.blocks.end();
     });
     it = !in_prior && it->second.last_used + kForget < newest ? window.directions.erase(it) : std::next(it);
   }

@@ -103,7 +103,8 @@ double reprojectionError(const SlidingWindow& window, const PointTrack& track) {
   double sum = 0;
   for (const PointSighting& s : track.sightings) {
     const Pose T_w_c = window.T_w_c(window.frame(s.frame));
-    const Eigen::Vector3d g = T_w_c.q.conjugate() * (track.point.head<3>() + track.point[3] * (track.origin_w - T_w_c.p));
+    const Eigen::Vector3d g =
+        T_w_c.q.conjugate() * (track.point.head<3>() + track.point[3] * (track.origin_w - T_w_c.p));
     if (g.z() < 1e-6) return std::numeric_limits<double>::infinity();
     sum += (camera.toPixel(g.head<2>() / g.z()) - s.px).norm();
   }

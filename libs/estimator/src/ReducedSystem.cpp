@@ -46,7 +46,8 @@ void ReducedSystem::placeStates(const std::set<BlockKey>& first, const std::set<
   for (const BlockKey& key : frozen) all.erase(key);
   states_.blocks.assign(all.begin(), all.end());
   std::sort(states_.blocks.begin(), states_.blocks.end(), comesBefore);
-  std::stable_partition(states_.blocks.begin(), states_.blocks.end(), [&first](const BlockKey& key) { return first.count(key) > 0; });
+  std::stable_partition(states_.blocks.begin(), states_.blocks.end(),
+                        [&first](const BlockKey& key) { return first.count(key) > 0; });
   Eigen::Index size = 0;
   for (const BlockKey& key : states_.blocks) {
     states_.offsets.push_back(size);
@@ -137,7 +138,8 @@ double ReducedSystem::addPrior(const Factor& factor, const PriorFactor& prior) {
     if (isVectorSpace(*block.manifold)) continue;
     RowMajorMatrix plus(block.manifold->AmbientSize(), block.manifold->TangentSize());
     block.manifold->PlusJacobian(blocks[i], plus.data());
-    const Eigen::MatrixXd C = block.manifold->differenceJacobian(blocks[i], block.linearisation.data()).lazyProduct(plus);
+    const Eigen::MatrixXd C =
+        block.manifold->differenceJacobian(blocks[i], block.linearisation.data()).lazyProduct(plus);
     H.middleCols(to.from[i], C.cols()) = H.middleCols(to.from[i], C.cols()).lazyProduct(C).eval();
     H.middleRows(to.from[i], C.cols()) = C.transpose().lazyProduct(H.middleRows(to.from[i], C.cols())).eval();
     gradient.segment(to.from[i], C.cols()) = C.transpose().lazyProduct(gradient.segment(to.from[i], C.cols())).eval();
@@ -161,8 +163,10 @@ void ReducedSystem::addInformation(const Placement& place, const Eigen::MatrixXd
     if (place.to[i] < 0) continue;
     states_.b.segment(place.to[i], rows) += b.segment(place.from[i], rows);
     for (std::size_t j = 0; j < place.to.size(); ++j)
-      if (const Eigen::Index columns = place.from[j + 1] - place.from[j]; place.to[j] >= 0 && place.to[j] <= place.to[i])
-        states_.H.block(place.to[i], place.to[j], rows, columns) += H.block(place.from[i], place.from[j], rows, columns);
+      if (const Eigen::Index columns = place.from[j + 1] - place.from[j];
+          place.to[j] >= 0 && place.to[j] <= place.to[i])
+        states_.H.block(place.to[i], place.to[j], rows, columns) +=
+            H.block(place.from[i], place.from[j], rows, columns);
   }
 }
 
@@ -200,7 +204,8 @@ bool ReducedSystem::solve(double damping) {
 
   Eigen::VectorXd gradient = states_.b;
   chain.addGradient(landmarks_.direct().b, gradient);
-  model_decrease_ = 0.5 * step_.dot(added.cwiseProduct(step_) - gradient) + landmarks_.backSubstitute(chain.cameraStep(step_), damping);
+  model_decrease_ = 0.5 * step_.dot(added.cwiseProduct(step_) - gradient) +
+                    landmarks_.backSubstitute(chain.cameraStep(step_), damping);
   return true;
 }
 

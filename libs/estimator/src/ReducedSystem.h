@@ -13,14 +13,15 @@
 
 namespace lintel {
 
-/// The order of states in normal equations: motions, then poses, each the newest first, then the others. A motion hangs on
-/// poses and motions of its neighbours only, and the oldest one on the prior, so few entries come first [SparseCholesky.h].
+/// The order of states in normal equations: motions, then poses, each the newest first, then the others. A motion hangs
+/// on poses and motions of its neighbours only, and the oldest one on the prior, so few entries come first
+/// [SparseCholesky.h].
 bool comesBefore(const BlockKey& a, const BlockKey& b);
 
 /// Normal equations in the tangent spaces of some blocks: H dx = -b.
 struct NormalEquations {
-  std::vector<BlockKey> blocks;          ///< in the order of H
-  std::vector<Eigen::Index> offsets;     ///< of the blocks in H; one more entry for the end
+  std::vector<BlockKey> blocks;       ///< in the order of H
+  std::vector<Eigen::Index> offsets;  ///< of the blocks in H; one more entry for the end
   Eigen::MatrixXd H;
   Eigen::VectorXd b;
 };
@@ -77,10 +78,10 @@ class ReducedSystem {
   void addInformation(const Placement& place, const Eigen::MatrixXd& H, const Eigen::VectorXd& b);
 
   SlidingWindow& window_;
-  std::vector<Factor> others_;           // without points and lines
+  std::vector<Factor> others_;  // without points and lines
   LandmarkSystem landmarks_;
-  NormalEquations states_;               // of the others alone, lower triangle
-  std::vector<CameraView> views_;        // at the last linearisation
+  NormalEquations states_;         // of the others alone, lower triangle
+  std::vector<CameraView> views_;  // at the last linearisation
   Eigen::VectorXd step_;
   std::vector<double> saved_;
   double model_decrease_ = 0, states_move_ = 0;

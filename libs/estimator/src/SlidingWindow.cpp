@@ -25,13 +25,20 @@ WindowFrame& SlidingWindow::frame(FrameId id) { return const_cast<WindowFrame&>(
 
 double* SlidingWindow::block(const BlockKey& key) {
   switch (key.kind) {
-    case BlockKey::kPose: return frame(key.id).pose.data();
-    case BlockKey::kMotion: return frame(key.id).motion.data();
-    case BlockKey::kExtrinsics: return extrinsics.data();
-    case BlockKey::kCorrection: return correction.data();
-    case BlockKey::kDirection: return directions.at(key.id).d_w.data();
-    case BlockKey::kPoint: return points.at(key.id).point.data();
-    case BlockKey::kLine: return lines.at(key.id).line.data();
+    case BlockKey::kPose:
+      return frame(key.id).pose.data();
+    case BlockKey::kMotion:
+      return frame(key.id).motion.data();
+    case BlockKey::kExtrinsics:
+      return extrinsics.data();
+    case BlockKey::kCorrection:
+      return correction.data();
+    case BlockKey::kDirection:
+      return directions.at(key.id).d_w.data();
+    case BlockKey::kPoint:
+      return points.at(key.id).point.data();
+    case BlockKey::kLine:
+      return lines.at(key.id).line.data();
   }
   throw std::out_of_range("SlidingWindow: unknown kind of block");
 }
@@ -45,9 +52,8 @@ void SlidingWindow::addFrame(WindowFrame frame, const FrameTracks& tracks) {
   for (const LineObservation& o : tracks.lines) {
     LineTrack& track = lines[o.id];
     track.id = o.id;
-    track.sightings.push_back({frame.id, makeObservation(camera_, o.start),
-                               makeObservation(camera_, o.end), o.start_px, o.end_px,
-                               o.sigma_px, o.detected});
+    track.sightings.push_back({frame.id, makeObservation(camera_, o.start), makeObservation(camera_, o.end), o.start_px,
+                               o.end_px, o.sigma_px, o.detected});
   }
   frames.push_back(std::move(frame));
 }

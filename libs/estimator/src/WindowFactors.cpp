@@ -39,7 +39,8 @@ void WindowFactors::addCalibrationPriors(const CalibrationParams& p, const Pose&
   Eigen::VectorXd sigma(kPoseTangent);
   sigma << Eigen::Vector3d::Constant(p.extrinsic_translation_sigma_m),
       Eigen::Vector3d::Constant(p.extrinsic_rotation_sigma_rad);
-  add(makeBlockPrior(manifoldOf(BlockKey::kExtrinsics), toBlock(T_b_c_calibrated), sigma), {{BlockKey::kExtrinsics, 0}});
+  add(makeBlockPrior(manifoldOf(BlockKey::kExtrinsics), toBlock(T_b_c_calibrated), sigma),
+      {{BlockKey::kExtrinsics, 0}});
   Eigen::VectorXd correction_sigma(kCorrectionSize);
   correction_sigma << p.focal_sigma_px, p.focal_sigma_px, p.centre_sigma_px, p.centre_sigma_px, p.distortion_sigma,
       p.distortion_sigma, p.time_offset_sigma_s;
@@ -97,7 +98,8 @@ void WindowFactors::addPoint(const PointTrack& track) {
   if (track.sightings.size() < 2) return;  // one sighting says nothing about the cameras
   for (const PointSighting& s : track.sightings) {
     point_factors_.emplace_back(s.px, window_.camera(), motionOf(s.frame), track.origin_w, params_.point_sigma_px);
-    factors_.push_back({&point_factors_.back(), &point_loss_,
+    factors_.push_back({&point_factors_.back(),
+                        &point_loss_,
                         {{BlockKey::kPose, s.frame},
                          {BlockKey::kExtrinsics, 0},
                          {BlockKey::kCorrection, 0},
@@ -128,7 +130,8 @@ void WindowFactors::addSightings(const LineTrack& track) {
   for (const LineSighting& s : track.sightings) {
     const double weight = window_.camera().meanFocal() / (params_.line_sigma_px * s.sigma_px);
     line_factors_.emplace_back(s.start, s.end, motionOf(s.frame), track.origin_w, weight);
-    factors_.push_back({&line_factors_.back(), &line_loss_,
+    factors_.push_back({&line_factors_.back(),
+                        &line_loss_,
                         {{BlockKey::kPose, s.frame},
                          {BlockKey::kExtrinsics, 0},
                          {BlockKey::kCorrection, 0},
@@ -139,8 +142,12 @@ void WindowFactors::addSightings(const LineTrack& track) {
 void WindowFactors::addVanishing(const LineTrack& track, const LineSighting& s, const DegeneracyParams& degeneracy) {
   setStructuralLoss(degeneracy);
   const double sigma = planeSigma(window_, params_, s, window_.directions.at(track.group).d_w);
-  add(std::make_unique<VanishingFactor>(s.start, s.end, motionOf(s.frame), 1 / std::hypot(sigma, degeneracy.structural_sigma_rad)),
-      {{BlockKey::kPose, s.frame}, {BlockKey::kExtrinsics, 0}, {BlockKey::kCorrection, 0}, {BlockKey::kDirection, track.group}});
+  add(std::make_unique<VanishingFactor>(s.start, s.end, motionOf(s.frame),
+                                        1 / std::hypot(sigma, degeneracy.structural_sigma_rad)),
+      {{BlockKey::kPose, s.frame},
+       {BlockKey::kExtrinsics, 0},
+       {BlockKey::kCorrection, 0},
+       {BlockKey::kDirection, track.group}});
   factors_.back().loss = structural_loss_.get();
 }
 

@@ -49,8 +49,9 @@ class WindowFactors {
   void addImuAfter(FrameId frame);
   void addRestOf(const WindowFrame& frame, double velocity_sigma);  ///< nothing unless it is at rest
   void addPoint(const PointTrack& track);
-  void addLine(const LineTrack& track, const DegeneracyParams& degeneracy);  ///< and what ties it to its group, if it has one
-  void addSightings(const LineTrack& track);  ///< without what ties it
+  void addLine(const LineTrack& track,
+               const DegeneracyParams& degeneracy);  ///< and what ties it to its group, if it has one
+  void addSightings(const LineTrack& track);         ///< without what ties it
   void addVanishing(const LineTrack& track, const LineSighting& sighting, const DegeneracyParams& degeneracy);
   void add(std::unique_ptr<ceres::CostFunction> cost, std::vector<BlockKey> blocks);
 

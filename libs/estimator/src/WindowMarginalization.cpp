@@ -13,7 +13,8 @@ namespace {
 /// Takes the priors that touch one of `blocks` out of the window.
 std::vector<WindowPrior> takePriors(SlidingWindow& window, const std::set<BlockKey>& blocks) {
   const auto touches = [&](const WindowPrior& prior) {
-    return std::any_of(prior.blocks.begin(), prior.blocks.end(), [&](const BlockKey& k) { return blocks.count(k) > 0; });
+    return std::any_of(prior.blocks.begin(), prior.blocks.end(),
+                       [&](const BlockKey& k) { return blocks.count(k) > 0; });
   };
   std::vector<WindowPrior> taken, kept;
   for (WindowPrior& prior : window.priors) (touches(prior) ? taken : kept).push_back(std::move(prior));
@@ -42,7 +43,8 @@ void marginaliseOldest(SlidingWindow& window, const EstimatorParams& params) {
       dropped.insert({BlockKey::kPoint, id});
     }
   for (const auto& [id, track] : window.lines)
-    if (entersProblem(track, params.degeneracy) && !track.sightings.empty() && track.sightings.front().frame == oldest.id) {
+    if (entersProblem(track, params.degeneracy) && !track.sightings.empty() &&
+        track.sightings.front().frame == oldest.id) {
       if (!track.placed || track.sightings.size() < 2) continue;  // shared directions stay out of the prior
       factors.addSightings(track);
       dropped.insert({BlockKey::kLine, id});

@@ -27,11 +27,12 @@ void retireUnplaced(const Track& track, std::vector<Retired>& retired) {
 }
 
 void retirePoint(const SlidingWindow& window, const PointTrack& track, WindowUpdate& update) {
-  if (!track.triangulated || track.sightings.empty() || track.point[3] <= 0) return retireUnplaced(track, update.points);
+  if (!track.triangulated || track.sightings.empty() || track.point[3] <= 0)
+    return retireUnplaced(track, update.points);
   const Eigen::Vector3d p_w = window.positionOf(track);
   const double distance = (p_w - window.T_w_c(window.frame(track.sightings.front().frame)).p).norm();
-  update.points.push_back({track.id, p_w, track.sigma_inverse_depth * distance * distance,
-                           allSightings(track.former, track.sightings)});
+  update.points.push_back(
+      {track.id, p_w, track.sigma_inverse_depth * distance * distance, allSightings(track.former, track.sightings)});
 }
 
 void retireLine(const LineTrack& track, WindowUpdate& update) {
@@ -93,9 +94,8 @@ void retireTracks(SlidingWindow& window, FrameId leaving, bool keyframe, WindowU
 }
 
 void retireKeyframe(const WindowFrame& frame, WindowUpdate& update) {
-  update.keyframes.push_back(
-      {frame.id, frame.t_ns, frame.T_w_b(), velocityOf(frame.motion.data()), biasOf(frame.motion.data()), frame.imu,
-       frame.at_rest});
+  update.keyframes.push_back({frame.id, frame.t_ns, frame.T_w_b(), velocityOf(frame.motion.data()),
+                              biasOf(frame.motion.data()), frame.imu, frame.at_rest});
 }
 
 void retireAll(SlidingWindow& window, WindowUpdate& update) {

@@ -60,8 +60,7 @@ WindowSigma windowSigma(const SlidingWindow& window, const EstimatorParams& para
   const Marginals marginals(equations);
   WindowSigma sigma;
   const Eigen::VectorXd motion = marginals.of({BlockKey::kMotion, window.frames.back().id});
-  if (motion.size() == kMotionSize)
-    sigma.bias = {motion.segment<3>(kBiasGyroAt), motion.segment<3>(kBiasAccelAt)};
+  if (motion.size() == kMotionSize) sigma.bias = {motion.segment<3>(kBiasGyroAt), motion.segment<3>(kBiasAccelAt)};
   const Eigen::VectorXd pose = marginals.of({BlockKey::kExtrinsics, 0});
   if (params.calibration.refine_extrinsics && pose.size() == kPoseTangent) {
     sigma.calibration.p_b_c_m = pose.head<3>();

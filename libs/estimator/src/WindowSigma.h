@@ -14,7 +14,8 @@ struct WindowSigma {
 };
 
 /// How well the window knows calibration and biases: from the information of all that its problem knows, priors of the
-/// rig included, with poses, velocities, points and lines marginalised. Costs about as much as an iteration of the solver.
+/// rig included, with poses, velocities, points and lines marginalised. Costs about as much as an iteration of the
+/// solver.
 WindowSigma windowSigma(const SlidingWindow& window, const EstimatorParams& params, const Pose& T_b_c_calibrated);
 
 }  // namespace lintel

@@ -11,13 +11,13 @@ namespace lintel {
 namespace {
 
 constexpr double kFirstDamping = 1e-4, kLeastDamping = 1e-12, kMostDamping = 1e8;
-constexpr double kTolerance = 1e-3;    // the next frame goes on from here; 1e-4 costs a tenth more and changes nothing
-constexpr double kLeastGain = 1e-3;    // of the decrease that the model promised
+constexpr double kTolerance = 1e-3;  // the next frame goes on from here; 1e-4 costs a tenth more and changes nothing
+constexpr double kLeastGain = 1e-3;  // of the decrease that the model promised
 
 }  // namespace
 
-SolveSummary solveWindow(SlidingWindow& window, const std::vector<Factor>& factors, const CalibrationParams& calibration,
-                         const SolveLimits& limits) {
+SolveSummary solveWindow(SlidingWindow& window, const std::vector<Factor>& factors,
+                         const CalibrationParams& calibration, const SolveLimits& limits) {
   std::set<BlockKey> frozen;
   if (!calibration.refine_extrinsics) frozen.insert({BlockKey::kExtrinsics, 0});
   if (!calibration.refine_camera && !calibration.refine_time_offset) frozen.insert({BlockKey::kCorrection, 0});

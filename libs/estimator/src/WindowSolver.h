@@ -21,7 +21,7 @@ struct SolveLimits {
 
 /// Minimises the given residuals over all blocks of the window they touch: Levenberg-Marquardt on ReducedSystem. One
 /// thread and a limit on iterations, not on time: the same result every run.
-SolveSummary solveWindow(SlidingWindow& window, const std::vector<Factor>& factors, const CalibrationParams& calibration,
-                         const SolveLimits& limits);
+SolveSummary solveWindow(SlidingWindow& window, const std::vector<Factor>& factors,
+                         const CalibrationParams& calibration, const SolveLimits& limits);
 
 }  // namespace lintel

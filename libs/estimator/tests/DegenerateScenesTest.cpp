@@ -92,7 +92,8 @@ TrackedFlight flight(const std::vector<Segment3>& lines_w, std::uint64_t seed = 
 FlownLines fly(const TrackedFlight& flight, const std::string& degenerate_lines) {
   EstimatorParams params;
   params.degeneracy.lines = degenerate_lines;
-  params.calibration.refine_camera = params.calibration.refine_extrinsics = params.calibration.refine_time_offset = false;
+  params.calibration.refine_camera = params.calibration.refine_extrinsics = params.calibration.refine_time_offset =
+      false;
   Estimator estimator(flight.rig, params);
   FlownLines result;
   std::vector<Eigen::Vector3d> estimate, truth;
@@ -157,7 +158,8 @@ TEST(DegenerateScenes, PolesAndStrutsAmongRailsAreNotBent) {
     if (!is_pole) continue;
     const auto dropped = drop.retired.find(id);
     if (dropped == drop.retired.end() || dropped->second.degenerate) {
-      EXPECT_TRUE(line.group == 0 || angle_deg(line, mixed) < 1) << "track " << id << " is tied to what it is not parallel to";
+      EXPECT_TRUE(line.group == 0 || angle_deg(line, mixed) < 1)
+          << "track " << id << " is tied to what it is not parallel to";
       continue;
     }
     EXPECT_LT(angle_deg(line, mixed), angle_deg(dropped->second, mixed) + 1) << "track " << id;

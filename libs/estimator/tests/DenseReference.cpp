@@ -105,8 +105,8 @@ double solveWithCeres(SlidingWindow& window, const std::vector<Factor>& factors)
       problem.AddParameterBlock(blocks.back(), manifold->AmbientSize(),
                                 curved ? const_cast<StateManifold*>(manifold.get()) : nullptr);
     }
-    problem.AddResidualBlock(const_cast<ceres::CostFunction*>(factor.cost), const_cast<ceres::LossFunction*>(factor.loss),
-                             blocks);
+    problem.AddResidualBlock(const_cast<ceres::CostFunction*>(factor.cost),
+                             const_cast<ceres::LossFunction*>(factor.loss), blocks);
   }
   ceres::Solver::Options solver;
   solver.linear_solver_type = ceres::DENSE_QR;

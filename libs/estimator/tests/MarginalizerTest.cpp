@@ -7,8 +7,8 @@
 #include <algorithm>
 #include <random>
 
-#include "PointTriangulation.h"
 #include "DenseReference.h"
+#include "PointTriangulation.h"
 #include "TestWindow.h"
 #include "WindowMarginalization.h"
 #include "lintel/factors/PriorFactors.h"
@@ -197,7 +197,8 @@ TEST(MarginalisedPrior, LeavesPositionAndYawFree) {
     EXPECT_LT(resistance(window, prior, Eigen::Vector3d::Zero(), 1), 1e-6) << round;
     // the measure is not blind: one frame alone may not move
     const NormalEquations eq = linearise(window, {{prior.factor.get(), nullptr, prior.blocks}}, {});
-    const auto pose = std::find_if(eq.blocks.begin(), eq.blocks.end(), [](const BlockKey& key) { return key.kind == BlockKey::kPose; });
+    const auto pose = std::find_if(eq.blocks.begin(), eq.blocks.end(),
+                                   [](const BlockKey& key) { return key.kind == BlockKey::kPose; });
     ASSERT_NE(pose, eq.blocks.end());
     const Eigen::Index at = eq.offsets[static_cast<std::size_t>(pose - eq.blocks.begin())];
     EXPECT_GT(std::sqrt(eq.H(at, at) / eq.H.diagonal().maxCoeff()), 1e-4);

@@ -24,7 +24,8 @@ SlidingWindow windowWithRails(int count) {
   SlidingWindow window = windowAt(kAhead);
   for (int i = 0; i < count; ++i) {
     const Eigen::Vector3d side(1.5 * std::cos(1.1 * i), 1.2 * std::sin(1.1 * i), 0);
-    seeEverywhere(window, static_cast<TrackId>(i + 1), {side + Eigen::Vector3d(0, 0, 0.8), side + Eigen::Vector3d(0, 0, 30)});
+    seeEverywhere(window, static_cast<TrackId>(i + 1),
+                  {side + Eigen::Vector3d(0, 0, 0.8), side + Eigen::Vector3d(0, 0, 30)});
   }
   triangulateLines(window, kParams);
   return window;
@@ -83,7 +84,8 @@ TEST(ParallelGroups, EndsThatLookFixedAreWaitedForAndMayContradict) {
   for (const WindowFrame& frame : window.frames) seeLine(window, 60, frame.id, pole);
   triangulateLines(window, kParams);
   ASSERT_TRUE(window.lines[60].degenerate());
-  ASSERT_LT(directionMisfit(window, kParams, window.lines[60], Eigen::Vector3d::UnitZ()), 1) << "its plane holds the direction";
+  ASSERT_LT(directionMisfit(window, kParams, window.lines[60], Eigen::Vector3d::UnitZ()), 1)
+      << "its plane holds the direction";
   groupParallelLines(window, kParams);
   EXPECT_EQ(window.lines[60].group, 0u);
 }

@@ -44,7 +44,8 @@ class ReducedSystemTest : public testing::Test {
     factors_->addGauge();
     for (const auto& [id, track] : window_.lines)
       if (track.triangulated && !track.degenerate() && lines_++ % 2 == 0)
-        factors_->add(std::make_unique<SharedDirectionFactor>(10.0), {{BlockKey::kLine, id}, {BlockKey::kDirection, 3}});
+        factors_->add(std::make_unique<SharedDirectionFactor>(10.0),
+                      {{BlockKey::kLine, id}, {BlockKey::kDirection, 3}});
     for (auto& [id, track] : window_.lines) {  // and some that have a direction only
       if (track.triangulated && !track.degenerate()) continue;
       track.group = 3;
@@ -74,8 +75,8 @@ TEST_F(ReducedSystemTest, EqualsTheSchurComplementOfTheDenseSystem) {
   const NormalEquations dense = linearise(window_, factors_->factors(), eliminated);
   const Eigen::Index m = dense.offsets[eliminated.size()], n = dense.H.rows() - m;
   const Eigen::LDLT<Eigen::MatrixXd> Hmm(dense.H.topLeftCorner(m, m));
-  const Eigen::MatrixXd H = dense.H.bottomRightCorner(n, n) -
-                            dense.H.bottomLeftCorner(n, m) * Hmm.solve(dense.H.topRightCorner(m, n));
+  const Eigen::MatrixXd H =
+      dense.H.bottomRightCorner(n, n) - dense.H.bottomLeftCorner(n, m) * Hmm.solve(dense.H.topRightCorner(m, n));
   const Eigen::VectorXd b = dense.b.tail(n) - dense.H.bottomLeftCorner(n, m) * Hmm.solve(dense.b.head(m));
 
   ReducedSystem system(window_, factors_->factors(), {}, {});
@@ -86,7 +87,8 @@ TEST_F(ReducedSystemTest, EqualsTheSchurComplementOfTheDenseSystem) {
   const Eigen::VectorXd scale = H.diagonal().cwiseSqrt();
   for (Eigen::Index i = 0; i < n; ++i) {
     EXPECT_NEAR(reduced.b[i], b[i], 1e-7 * scale[i] * b.cwiseQuotient(scale).norm()) << i;
-    for (Eigen::Index j = 0; j < n; ++j) EXPECT_NEAR(reduced.H(i, j), H(i, j), 1e-7 * scale[i] * scale[j]) << i << " " << j;
+    for (Eigen::Index j = 0; j < n; ++j)
+      EXPECT_NEAR(reduced.H(i, j), H(i, j), 1e-7 * scale[i] * scale[j]) << i << " " << j;
   }
 }
 
@@ -103,7 +105,8 @@ TEST_F(ReducedSystemTest, AStepSolvesTheDampedDenseSystem) {
   EXPECT_NEAR(system.modelDecrease(), decrease, 1e-4 * decrease);
   const NormalEquations states = system.eliminate();
   const Eigen::VectorXd step_of_states = -states.H.ldlt().solve(states.b);
-  EXPECT_NEAR(system.statesMove(), std::sqrt(step_of_states.dot(states.H * step_of_states)), 1e-4 * system.statesMove());
+  EXPECT_NEAR(system.statesMove(), std::sqrt(step_of_states.dot(states.H * step_of_states)),
+              1e-4 * system.statesMove());
   system.apply();
   for (std::size_t i = 0; i < dense.blocks.size(); ++i) {
     const auto manifold = manifoldOf(dense.blocks[i].kind);

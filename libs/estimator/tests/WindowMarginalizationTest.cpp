@@ -5,10 +5,10 @@
 
 #include <algorithm>
 
+#include "DenseReference.h"
 #include "LineTriangulation.h"
 #include "Marginalizer.h"
 #include "PointTriangulation.h"
-#include "DenseReference.h"
 #include "TestWindow.h"
 
 namespace lintel {

@@ -49,7 +49,8 @@ TEST(WindowSigma, ObservationsNarrowThePriorAndNothingWidensIt) {
 TEST(WindowSigma, WhatIsHeldHasNone) {
   const SlidingWindow window = flownWindow();
   EstimatorParams params;
-  params.calibration.refine_extrinsics = params.calibration.refine_camera = params.calibration.refine_time_offset = false;
+  params.calibration.refine_extrinsics = params.calibration.refine_camera = params.calibration.refine_time_offset =
+      false;
   const WindowSigma all = windowSigma(window, params, window.T_b_c());
   const CalibrationSigma& sigma = all.calibration;
   EXPECT_EQ(sigma.p_b_c_m.norm() + sigma.R_b_c_rad.norm() + sigma.camera.norm() + sigma.time_offset_s, 0);

@@ -12,7 +12,8 @@ constexpr double kApart_px = 2.5;  ///< between two lines of an image; MergePara
 /// Whether the images that show both show two lines: at least half of those in which they lie side by side.
 bool areSeenApart(const MapLine& a, const MapLine& b) {
   int apart = 0, together = 0;
-  for (auto i = a.observations.begin(), j = b.observations.begin(); i != a.observations.end() && j != b.observations.end();) {
+  for (auto i = a.observations.begin(), j = b.observations.begin();
+       i != a.observations.end() && j != b.observations.end();) {
     if (i->keyframe_id != j->keyframe_id) {
       i->keyframe_id < j->keyframe_id ? ++i : ++j;
       continue;
@@ -35,8 +36,8 @@ void EdgeCover::add(std::size_t edge_index, const MapLine& line, const Segment3&
   if (to_m > from_m) stretches_[edge_index].push_back({from_m, to_m, &line});
 }
 
-/// Length of the union of all stretches, each piece counted once and again for every line that `countsAgain(line, former
-/// line on this piece)` of any former line, over the union's length.
+/// Length of the union of all stretches, each piece counted once and again for every line that `countsAgain(line,
+/// former line on this piece)` of any former line, over the union's length.
 template <class CountsAgain>
 double EdgeCover::times(const CountsAgain& countsAgain) const {
   double sum_m = 0, union_m = 0;
@@ -51,7 +52,8 @@ double EdgeCover::times(const CountsAgain& countsAgain) const {
       for (const Stretch& s : stretches) {
         if (s.from_m > bounds_m[k] || s.to_m < bounds_m[k + 1]) continue;
         if (here.empty()) union_m += length_m;
-        if (here.empty() || std::any_of(here.begin(), here.end(), [&](const MapLine* former) { return countsAgain(*s.line, *former); }))
+        if (here.empty() ||
+            std::any_of(here.begin(), here.end(), [&](const MapLine* former) { return countsAgain(*s.line, *former); }))
           sum_m += length_m;
         here.push_back(s.line);
       }

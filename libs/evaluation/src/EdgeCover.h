@@ -18,7 +18,8 @@ class EdgeCover {
   /// Sum of the covered stretches' lengths over the length of their union; NaN without any.
   double duplicates() const;
 
-  /// The same without lines that images show beside all the others there: parallel lines close together are no duplicates.
+  /// The same without lines that images show beside all the others there: parallel lines close together are no
+  /// duplicates.
   double duplicatesNotSeenApart() const;
 
  private:

@@ -11,15 +11,9 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 Json jsonOf(const ErrorStatistics& statistics) {
-  return {{"count", statistics.count},
-          {"rmse", statistics.rmse},
-          {"mean", statistics.mean},
-          {"median", statistics.median},
-          {"max", statistics.max},
-          {"p05", statistics.p05},
-          {"p25", statistics.p25},
-          {"p75", statistics.p75},
-          {"p95", statistics.p95}};
+  return {{"count", statistics.count},   {"rmse", statistics.rmse}, {"mean", statistics.mean},
+          {"median", statistics.median}, {"max", statistics.max},   {"p05", statistics.p05},
+          {"p25", statistics.p25},       {"p75", statistics.p75},   {"p95", statistics.p95}};
 }
 
 Json jsonOf(const Similarity& s) {

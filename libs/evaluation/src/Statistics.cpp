@@ -18,8 +18,15 @@ ErrorStatistics statisticsOf(std::vector<double> errors) {
   const auto count = static_cast<double>(n);
   const auto quantile = [&](double q) { return errors[std::min(n - 1, static_cast<std::size_t>(q * count))]; };
   const double median = 0.5 * (errors[(n - 1) / 2] + errors[n / 2]);
-  return {n,             std::sqrt(sum_squares / count), sum / count,   median, errors.back(), quantile(0.05),
-          quantile(0.25), quantile(0.75),                 quantile(0.95)};
+  return {n,
+          std::sqrt(sum_squares / count),
+          sum / count,
+          median,
+          errors.back(),
+          quantile(0.05),
+          quantile(0.25),
+          quantile(0.75),
+          quantile(0.95)};
 }
 
 }  // namespace lintel

@@ -60,7 +60,8 @@ void printText(const TrajectoryErrors& e, std::ostream& out) {
       << fixed(100 * e.coverage_path, 1) << " % of " << fixed(e.path_m, 1) << " m\n"
       << "alignment       " << nameOf(e.alignment) << "\n";
   if (!e.complete)
-    out << "INCOMPLETE      the errors below are of a part of the recording: do not compare them with those of a whole run\n";
+    out << "INCOMPLETE      the errors below are of a part of the recording: do not compare them with those of a whole "
+           "run\n";
   printStatistics("position (ATE)", e.position_m, 1, "m", out);
   out << "whole recording RMSE " << fixed(e.whole_rmse_m, 4)
       << " m  (where there is no estimate, the one nearest in time stands in)\n";

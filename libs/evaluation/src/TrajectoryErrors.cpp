@@ -71,7 +71,8 @@ double wholeRmse(const Similarity& S_truth_estimate, const StampedPoses& estimat
     const PosePair* nearest = !after || (before && timeTo(before) <= timeTo(after)) ? before : after;
     const bool covered = before && after && timeTo(before) + timeTo(after) <= max_gap_s;
     const std::size_t truth = covered || nearest->groundtruth == i ? nearest->groundtruth : i;
-    const double error_m = (S_truth_estimate * estimate[nearest->estimate].second.p - groundtruth[truth].second.p).norm();
+    const double error_m =
+        (S_truth_estimate * estimate[nearest->estimate].second.p - groundtruth[truth].second.p).norm();
     const std::size_t from = i > 0 ? i - 1 : i, to = std::min(i + 1, groundtruth.size() - 1);
     const double weight_s = 0.5 * seconds(groundtruth[to].first - groundtruth[from].first);
     sum += weight_s * error_m * error_m;

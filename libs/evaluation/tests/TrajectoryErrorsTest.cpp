@@ -173,7 +173,8 @@ TEST(TrajectoryErrors, HalfARunCannotLookBetterThanAWholeOne) {
   const StampedPoses half(truth.begin(), truth.begin() + 8);  // perfect as far as it goes
   TrajectoryErrorParams params;
   params.max_gap_s = 1.5;
-  const TrajectoryErrors of_whole = evaluateTrajectory(whole, truth, params), of_half = evaluateTrajectory(half, truth, params);
+  const TrajectoryErrors of_whole = evaluateTrajectory(whole, truth, params),
+                         of_half = evaluateTrajectory(half, truth, params);
   EXPECT_TRUE(of_whole.complete);
   EXPECT_FALSE(of_half.complete);
   EXPECT_LT(of_half.position_m.rmse, of_whole.position_m.rmse);  // what must not be compared

@@ -76,8 +76,7 @@ std::vector<std::pair<std::string, Rgb>> LineColouring::legend(const std::vector
   for (const MapLine* line : lines) {
     if (mode_ == LineColour::kKind)
       found[line->constrained ? "direction from group" : line->degenerate ? "degenerate" : "free"] = (*this)(*line);
-    if (mode_ == LineColour::kGroup)
-      found[names(line->group)] = (*this)(*line);
+    if (mode_ == LineColour::kGroup) found[names(line->group)] = (*this)(*line);
   }
   std::vector<std::pair<std::string, Rgb>> entries(found.begin(), found.end());
   const bool scale = mode_ == LineColour::kUncertainty || mode_ == LineColour::kHeight;

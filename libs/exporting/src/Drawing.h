@@ -25,7 +25,8 @@ struct DrawnPoint {
 
 /// A named part of a drawing: segments or points.
 struct DrawnPart {
-  std::string name;  ///< "Lines vertical", "Lines no group", "Points", "Keyframes", "Trajectory": the same in every form
+  std::string
+      name;  ///< "Lines vertical", "Lines no group", "Points", "Keyframes", "Trajectory": the same in every form
   MapLayer layer = MapLayer::kLines;
   int group = -1;  ///< of lines
   std::vector<DrawnSegment> segments;

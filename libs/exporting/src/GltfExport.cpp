@@ -72,14 +72,9 @@ Json lineData(const Drawing& drawing, const DrawnPart& part) {
     degenerate.push_back(s.line->degenerate ? 1 : 0), constrained.push_back(s.line->constrained ? 1 : 0);
   }
   const GroupNames names(*drawing.map);
-  return {{"group", part.group},
-          {"group_name", names(part.group)},
-          {"id", ids},
-          {"observations", observations},
-          {"sigma_direction_rad", direction},
-          {"sigma_distance_m", distance},
-          {"degenerate", degenerate},
-          {"constrained", constrained}};
+  return {{"group", part.group},          {"group_name", names(part.group)},  {"id", ids},
+          {"observations", observations}, {"sigma_direction_rad", direction}, {"sigma_distance_m", distance},
+          {"degenerate", degenerate},     {"constrained", constrained}};
 }
 
 /// What is known of each keyframe, by column. Times are text: they do not fit a reader's double.

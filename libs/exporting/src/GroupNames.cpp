@@ -23,7 +23,8 @@ std::string spellable(const std::string& name) {
 
 /// Forms differ in what they tell apart: some write capitals only, some no blanks.
 std::string plainest(std::string name) {
-  for (char& c : name) c = c == ' ' || c == '-' || c == '.' ? '_' : c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
+  for (char& c : name)
+    c = c == ' ' || c == '-' || c == '.' ? '_' : c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
   return name;
 }
 

@@ -9,8 +9,8 @@
 namespace lintel {
 
 /// What a map's groups of parallel lines are called in every form: "vertical", "horizontal 1", …; "group 2" where the
-/// map does not say. All are different, short, and made of letters, digits, blanks and - _ . only, so that each form can
-/// spell them.
+/// map does not say. All are different, short, and made of letters, digits, blanks and - _ . only, so that each form
+/// can spell them.
 class GroupNames {
  public:
   explicit GroupNames(const LineMap& map);

@@ -94,7 +94,8 @@ Json coloursData(const Drawing& drawing) {
       for (const std::uint8_t v : {c.r, c.g, c.b}) rgb.push_back(static_cast<char>(v));
     }
     Json legend = Json::array();
-    for (const auto& [text, colour] : colouring.legend(drawing.lines, names)) legend.push_back({text, cssColour(colour)});
+    for (const auto& [text, colour] : colouring.legend(drawing.lines, names))
+      legend.push_back({text, cssColour(colour)});
     data["colours"][name] = {{"rgb", base64(rgb)}, {"legend", legend}};
   }
   return data;

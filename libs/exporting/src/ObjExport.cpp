@@ -79,7 +79,8 @@ class ObjWriter {
     text_ << "o " << objectName(part) << (part.points.empty() ? "_tubes\n" : "_bodies\n");
     used_ = false;
     for (const DrawnSegment& s : part.segments) {
-      if (const auto tube = makeTube(s.start, s.end, drawing_.radiusOf(s))) body(tube->corners, kTubeTriangles, s.colour);
+      if (const auto tube = makeTube(s.start, s.end, drawing_.radiusOf(s)))
+        body(tube->corners, kTubeTriangles, s.colour);
     }
     for (const DrawnPoint& p : part.points) {
       if (const auto corners = makeTetrahedron(p.p, drawing_.radius_m)) body(*corners, kTetrahedronTriangles, p.colour);

@@ -19,7 +19,7 @@ namespace lintel {
 
 namespace {
 
-constexpr double kSpacing_m = 0.05;    // along a line; MOLA's local maps are no finer
+constexpr double kSpacing_m = 0.05;     // along a line; MOLA's local maps are no finer
 constexpr double kMostAlongALine = 50;  // a runaway line does not fill a cloud
 
 /// What a keyframe saw of the drawing.
@@ -50,7 +50,8 @@ mrpt::Clock::time_point mrptTime(std::int64_t t_ns) {
 
 mrpt::poses::CPose3D mrptPose(const Pose& T) {
   return mrpt::poses::CPose3D::FromQuaternionAndTranslation(
-      mrpt::math::CQuaternionDouble(T.q.w(), T.q.x(), T.q.y(), T.q.z()), mrpt::math::TPoint3D(T.p.x(), T.p.y(), T.p.z()));
+      mrpt::math::CQuaternionDouble(T.q.w(), T.q.x(), T.q.y(), T.q.z()),
+      mrpt::math::TPoint3D(T.p.x(), T.p.y(), T.p.z()));
 }
 
 mrpt::maps::CSimplePointsMap::Ptr cloudOfPoints(const Seen& seen, const Pose& T_c_w) {

@@ -17,18 +17,18 @@ using OutputFiles = std::vector<OutputFile>;
 
 // One writer per form, each in a file of its name. The first file has the name `path`; others stand beside it.
 // Throw ExportError for what only they can know.
-OutputFiles csvFiles(const Drawing& drawing, const std::string& path);    // table of lines
-OutputFiles jsonFiles(const Drawing& drawing, const std::string& path);   // the full data
-OutputFiles objFiles(const Drawing& drawing, const std::string& path);    // with .mtl
-OutputFiles plyFiles(const Drawing& drawing, const std::string& path);    // ASCII
-OutputFiles glbFiles(const Drawing& drawing, const std::string& path);    // glTF 2, binary
-OutputFiles gltfFiles(const Drawing& drawing, const std::string& path);   // glTF 2, text with the data inside
-OutputFiles daeFiles(const Drawing& drawing, const std::string& path);    // Collada
-OutputFiles x3dFiles(const Drawing& drawing, const std::string& path);    // X3D
-OutputFiles sceneFiles(const Drawing& drawing, const std::string& path);  // MRPT COpenGLScene
+OutputFiles csvFiles(const Drawing& drawing, const std::string& path);        // table of lines
+OutputFiles jsonFiles(const Drawing& drawing, const std::string& path);       // the full data
+OutputFiles objFiles(const Drawing& drawing, const std::string& path);        // with .mtl
+OutputFiles plyFiles(const Drawing& drawing, const std::string& path);        // ASCII
+OutputFiles glbFiles(const Drawing& drawing, const std::string& path);        // glTF 2, binary
+OutputFiles gltfFiles(const Drawing& drawing, const std::string& path);       // glTF 2, text with the data inside
+OutputFiles daeFiles(const Drawing& drawing, const std::string& path);        // Collada
+OutputFiles x3dFiles(const Drawing& drawing, const std::string& path);        // X3D
+OutputFiles sceneFiles(const Drawing& drawing, const std::string& path);      // MRPT COpenGLScene
 OutputFiles simplemapFiles(const Drawing& drawing, const std::string& path);  // MRPT CSimpleMap: keyframes
-OutputFiles dxfFiles(const Drawing& drawing, const std::string& path);    // CAD, lines on layers
-OutputFiles pngFiles(const Drawing& drawing, const std::string& path);    // picture of three views
-OutputFiles htmlFiles(const Drawing& drawing, const std::string& path);   // page that shows the map in a browser
+OutputFiles dxfFiles(const Drawing& drawing, const std::string& path);        // CAD, lines on layers
+OutputFiles pngFiles(const Drawing& drawing, const std::string& path);        // picture of three views
+OutputFiles htmlFiles(const Drawing& drawing, const std::string& path);       // page that shows the map in a browser
 
 }  // namespace lintel

@@ -38,7 +38,8 @@ class GroupsInFiles : public FolderTest {
 TEST_F(GroupsInFiles, AreNodesInGlbAndGltf) {
   for (const char* name : {"map.glb", "map.gltf"}) {
     written(name);
-    EXPECT_THAT(reimport(in(name)).nodes, IsSupersetOf({"Lines horizontal 1", "Lines horizontal 2", "Lines vertical", "Lines no group"}))
+    EXPECT_THAT(reimport(in(name)).nodes,
+                IsSupersetOf({"Lines horizontal 1", "Lines horizontal 2", "Lines vertical", "Lines no group"}))
         << name;
   }
   const auto gltf = nlohmann::json::parse(content(in("map.gltf")));

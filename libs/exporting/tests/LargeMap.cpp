@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // large_map lines COUNT OUT.lintel        COUNT short lines in a hall
-// large_map repeat MAP.lintel N OUT.lintel  a map N times, one after the other in time and place: 225 times 16 s is an hour
-// For measurements of exports (doc/results.md); not part of the tests.
+// large_map repeat MAP.lintel N OUT.lintel  a map N times, one after the other in time and place: 225 times 16 s is an
+// hour For measurements of exports (doc/results.md); not part of the tests.
 #include <cstdlib>
 #include <iostream>
 

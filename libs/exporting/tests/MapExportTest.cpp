@@ -198,10 +198,8 @@ TEST_F(MapExport, CsvHoldsTheColumnsLosslessly) {
   EXPECT_EQ(text.substr(0, text.find('\n')),
             "id,x0,y0,z0,x1,y1,z1,observations,first_s,last_s,sigma_direction_rad,sigma_distance_m,degenerate,"
             "constrained,group,group_name");
-  EXPECT_THAT(
-      text,
-      ::testing::HasSubstr(
-          "\n10,0.1,-1e-17,3,1e+10,0.3333333333333333,-0,2,1403636579.763555584,-1.500000000,0.001,0.003,0,1,0,group 0\n"));
+  EXPECT_THAT(text, ::testing::HasSubstr("\n10,0.1,-1e-17,3,1e+10,0.3333333333333333,-0,2,1403636579.763555584,-1."
+                                         "500000000,0.001,0.003,0,1,0,group 0\n"));
   EXPECT_EQ(std::count(text.begin(), text.end(), '\n'), 3);
 }
 

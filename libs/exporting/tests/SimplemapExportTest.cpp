@@ -23,7 +23,9 @@ class SimplemapExport : public FolderTest {
   }
 };
 
-Pose poseOf(const mrpt::poses::CPose3D& pose) { return poseFromMatrix(pose.getHomogeneousMatrixVal<mrpt::math::CMatrixDouble44>().asEigen()); }
+Pose poseOf(const mrpt::poses::CPose3D& pose) {
+  return poseFromMatrix(pose.getHomogeneousMatrixVal<mrpt::math::CMatrixDouble44>().asEigen());
+}
 
 /// Where the points of the frame's observation of that name are in the world.
 std::vector<Eigen::Vector3d> worldPoints(const mrpt::obs::CSensoryFrame& frame, const char* label, const Pose& T_w_b) {
@@ -45,7 +47,8 @@ TEST_F(SimplemapExport, MrptReadsTheKeyframesPosesBack) {
   const auto read = reread(room);
   ASSERT_EQ(read.size(), room.keyframes.size());
   for (std::size_t i = 0; i < read.size(); ++i) {
-    const Pose T_w_b = poseOf(read.begin()[static_cast<std::ptrdiff_t>(i)].pose->getMeanVal()), wanted = room.keyframes[i].T_w_b;
+    const Pose T_w_b = poseOf(read.begin()[static_cast<std::ptrdiff_t>(i)].pose->getMeanVal()),
+               wanted = room.keyframes[i].T_w_b;
     EXPECT_LT((T_w_b.p - wanted.p).norm(), 1e-12) << i;
     EXPECT_LT(T_w_b.q.angularDistance(wanted.q), 1e-7) << i;
   }

@@ -29,7 +29,8 @@ std::string browser() {
   return "";
 }
 
-/// Runs before everything else of a page: keeps what goes wrong. Headless Chromium asks for few frames of its own accord.
+/// Runs before everything else of a page: keeps what goes wrong. Headless Chromium asks for few frames of its own
+/// accord.
 const std::string kWatch = R"(<script>
 window.requestAnimationFrame = (draw) => setTimeout(() => draw(performance.now()), 16);
 window.faults = [];
@@ -109,10 +110,17 @@ class ViewerPage : public FolderTest {
 
   /// Opens the page without a display or a graphics card; software draws. Home is the test's folder.
   ChildResult open(const std::string& page, const std::string& what) const {
-    std::vector<std::string> command{browser(), "--headless=new", "--use-angle=swiftshader",
-                                     "--enable-unsafe-swiftshader", "--window-size=800,600", "--hide-scrollbars",
-                                     "--virtual-time-budget=20000", "--enable-logging=stderr",
-                                     "--user-data-dir=" + in("profile"), what, "file://" + page};
+    std::vector<std::string> command{browser(),
+                                     "--headless=new",
+                                     "--use-angle=swiftshader",
+                                     "--enable-unsafe-swiftshader",
+                                     "--window-size=800,600",
+                                     "--hide-scrollbars",
+                                     "--virtual-time-budget=20000",
+                                     "--enable-logging=stderr",
+                                     "--user-data-dir=" + in("profile"),
+                                     what,
+                                     "file://" + page};
     if (::geteuid() == 0) command.insert(command.begin() + 1, "--no-sandbox");  // its sandbox refuses root
     return runChild({command, "", "", {"HOME=" + folder_.string()}});
   }
@@ -145,7 +153,7 @@ TEST_F(ViewerPage, ShowsColouredLinesWithoutAWordOnTheConsole) {
   for (int y = 0; y < shot.rows; ++y) {
     for (int x = shot.cols / 3; x < shot.cols; ++x) {  // beside the panel
       const cv::Vec3b p = shot.at<cv::Vec3b>(y, x);
-      red += p[2] > 150 && p[1] < 90, green += p[1] > 120 && p[2] < 90, blue += p[0] > 150 && p[2] < 90;
+      red += p[2] > 150 && p[1]<90, green += p[1]> 120 && p[2]<90, blue += p[0]> 150 && p[2] < 90;
     }
   }
   EXPECT_GT(std::min({red, green, blue}), 300) << red << " " << green << " " << blue;

@@ -5,8 +5,8 @@
 
 namespace lintel {
 
-CameraView::CameraView(const double* pose, const double* extrinsics, const double* correction, const FrameMotion& motion,
-                       bool derivatives) {
+CameraView::CameraView(const double* pose, const double* extrinsics, const double* correction,
+                       const FrameMotion& motion, bool derivatives) {
   const Pose T_w_b = poseFromBlock(pose), T_b_c = poseFromBlock(extrinsics);
   const double offset_s = correction[kTimeOffsetAt];
   const Eigen::Matrix3d R_stamp = T_w_b.R(), turn = expRotation(motion.omega_b * offset_s).toRotationMatrix();

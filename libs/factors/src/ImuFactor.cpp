@@ -14,11 +14,18 @@ namespace {
 template <int Cols>
 using Jacobian15 = Eigen::Matrix<double, 15, Cols, Eigen::RowMajor>;
 
-enum Row { kTheta = Preintegration::kTheta, kV = Preintegration::kVelocity, kP = Preintegration::kPosition, kBg = 9, kBa = 12 };
+enum Row {
+  kTheta = Preintegration::kTheta,
+  kV = Preintegration::kVelocity,
+  kP = Preintegration::kPosition,
+  kBg = 9,
+  kBa = 12
+};
 
 }  // namespace
 
-ImuFactor::ImuFactor(std::shared_ptr<const Preintegration> preintegration) : preintegration_(std::move(preintegration)) {
+ImuFactor::ImuFactor(std::shared_ptr<const Preintegration> preintegration)
+    : preintegration_(std::move(preintegration)) {
   const Eigen::Matrix<double, 9, 9> information = preintegration_->covariance().inverse();
   sqrt_information_ = information.llt().matrixU();
   const double root_dt = std::sqrt(preintegration_->dt_s());

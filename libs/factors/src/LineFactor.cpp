@@ -17,7 +17,8 @@ void LineFactor::linearise(const CameraView& view, const double* correction, con
   const Eigen::Vector3d l = view.R_c_w * (n_w + from_camera_w.cross(d_w));  // moment about the camera, its axes
   const double m = std::max(l.head<2>().norm(), 1e-12);
 
-  const Eigen::Vector3d ends[2] = {start_.corrected(correction).homogeneous(), end_.corrected(correction).homogeneous()};
+  const Eigen::Vector3d ends[2] = {start_.corrected(correction).homogeneous(),
+                                   end_.corrected(correction).homogeneous()};
   const Eigen::Vector2d normal = l.head<2>() / m;
   Eigen::Matrix<double, 2, 3> d_l;  // d r / d l
   for (int k = 0; k < 2; ++k) {

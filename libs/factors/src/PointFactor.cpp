@@ -28,8 +28,8 @@ void PointFactor::linearise(const CameraView& view, const double* correction, co
   out.d_camera.leftCols<3>() = -w * d_gw;
   out.d_camera.rightCols<3>() = d_g * skew(g_c);
   const double r2 = n.squaredNorm();
-  out.d_intrinsics << weight_ * distorted.x(), 0, weight_, 0, focal.x() * n.x() * r2, focal.x() * n.x() * r2 * r2,
-      0, weight_ * distorted.y(), 0, weight_, focal.y() * n.y() * r2, focal.y() * n.y() * r2 * r2;
+  out.d_intrinsics << weight_ * distorted.x(), 0, weight_, 0, focal.x() * n.x() * r2, focal.x() * n.x() * r2 * r2, 0,
+      weight_ * distorted.y(), 0, weight_, focal.y() * n.y() * r2, focal.y() * n.y() * r2 * r2;
   out.d_point.leftCols<3>() = d_gw;
   out.d_point.col(3) = d_gw * from_camera_w;
 }

@@ -19,8 +19,7 @@ void write(double* out, const Jacobian& J) {
 /// `d_direction` (3x3) times d (U e2) / d line block.
 LineJacobian throughLine(const Eigen::Matrix3d& d_direction, const OrthonormalLine& line) {
   LineJacobian J;
-  J.leftCols<4>() =
-      -d_direction * line.U.toRotationMatrix() * skew(Eigen::Vector3d::UnitY()) * rotationLift(line.U);
+  J.leftCols<4>() = -d_direction * line.U.toRotationMatrix() * skew(Eigen::Vector3d::UnitY()) * rotationLift(line.U);
   J.col(4).setZero();
   return J;
 }

@@ -7,15 +7,16 @@
 
 namespace lintel {
 
-void VanishingFactor::linearise(const CameraView& view, const double* correction, const double* direction, bool jacobians,
-                                VanishingLinearisation& out) const {
-  const Eigen::Vector3d start = start_.corrected(correction).homogeneous(), end = end_.corrected(correction).homogeneous();
+void VanishingFactor::linearise(const CameraView& view, const double* correction, const double* direction,
+                                bool jacobians, VanishingLinearisation& out) const {
+  const Eigen::Vector3d start = start_.corrected(correction).homogeneous(),
+                        end = end_.corrected(correction).homogeneous();
   const Eigen::Vector3d cross = start.cross(end), d_c = view.R_c_w * Eigen::Vector3d::Map(direction);
   const double norm = std::max(cross.norm(), 1e-12);
   const Eigen::Vector3d n = cross / norm;
   out.residual = weight_ * n.dot(d_c);
   if (!jacobians) return;
-  out.d_camera << 0, 0, 0, weight_ * n.transpose() * skew(d_c);  // R_c_w <- Exp(-dtheta) R_c_w
+  out.d_camera << 0, 0, 0, weight_ * n.transpose() * skew(d_c);             // R_c_w <- Exp(-dtheta) R_c_w
   const Eigen::Vector3d d_cross = weight_ / norm * (d_c - n.dot(d_c) * n);  // d r / d cross
   const Eigen::Vector3d d_start = end.cross(d_cross), d_end = d_cross.cross(start);
   out.d_intrinsics = d_start.head<2>().transpose() * start_.correction_jacobian.leftCols<kIntrinsicsSize>() +
@@ -29,7 +30,8 @@ bool VanishingFactor::Evaluate(double const* const* parameters, double* residual
   linearise(view, parameters[2], parameters[3], jacobians != nullptr, result);
   residuals[0] = result.residual;
   if (!jacobians) return true;
-  const auto writePose = [&](const Eigen::Matrix<double, kCameraTangent, kPoseTangent>& d_block, const double* block, double* out) {
+  const auto writePose = [&](const Eigen::Matrix<double, kCameraTangent, kPoseTangent>& d_block, const double* block,
+                             double* out) {
     const Eigen::Matrix<double, 1, kPoseTangent> tangent = result.d_camera * d_block;
     Eigen::Map<Eigen::Matrix<double, 1, kPoseSize>> J(out);
     J.head<3>() = tangent.head<3>();

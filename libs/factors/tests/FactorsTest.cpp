@@ -142,7 +142,8 @@ TEST(StructuralFactors, AreTheSineOfTheAngleWhateverTheSign) {
   const LineBlock i = lineAlong({1, 0, 0}), j = lineAlong({std::cos(angle), std::sin(angle), 0});
   const DirectionBlock along(1, 0, 0), against(-std::cos(angle), -std::sin(angle), 0);
   Eigen::Vector3d r;
-  const double *pair[] = {i.data(), j.data()}, *parallel[] = {i.data(), along.data()}, *turned[] = {i.data(), against.data()};
+  const double *pair[] = {i.data(), j.data()}, *parallel[] = {i.data(), along.data()},
+               *turned[] = {i.data(), against.data()};
   ASSERT_TRUE(ParallelLinesFactor(50).Evaluate(pair, r.data(), nullptr));
   EXPECT_NEAR(r.norm(), 50 * std::sin(angle), 1e-12);
   ASSERT_TRUE(SharedDirectionFactor(50).Evaluate(parallel, r.data(), nullptr));
@@ -212,7 +213,8 @@ TEST(ImuFactor, IsZeroForTheIntegratedMotion) {
   const Pose T_w_bi{expRotation({0.3, 0.1, -1}), {1, 2, 3}};
   const Eigen::Vector3d v_i(0.4, -0.2, 0.1);
   const double dt = pre->dt_s();
-  const Pose T_w_bj{T_w_bi.q * pre->deltaR(), T_w_bi.p + v_i * dt + 0.5 * gravityW() * dt * dt + T_w_bi.q * pre->deltaP()};
+  const Pose T_w_bj{T_w_bi.q * pre->deltaR(),
+                    T_w_bi.p + v_i * dt + 0.5 * gravityW() * dt * dt + T_w_bi.q * pre->deltaP()};
   MotionBlock motion_i, motion_j;
   motion_i << v_i, pre->bias().gyro, pre->bias().accel;
   motion_j << v_i + gravityW() * dt + T_w_bi.q * pre->deltaV(), pre->bias().gyro, pre->bias().accel;

@@ -66,7 +66,9 @@ TEST(DirectionManifold, DifferenceJacobianFarFromTheLinearisation) {
 
 TEST(PoseManifold, Invariants) { expectInvariants(PoseManifold(), kPose); }
 TEST(LineManifold, Invariants) { expectInvariants(LineManifold(), kLine); }
-TEST(PointManifold, Invariants) { expectInvariants(PointManifold(), Eigen::Vector4d(0.1, -0.5, 0.3, 0.2).normalized()); }
+TEST(PointManifold, Invariants) {
+  expectInvariants(PointManifold(), Eigen::Vector4d(0.1, -0.5, 0.3, 0.2).normalized());
+}
 TEST(VectorManifold, Invariants) { expectInvariants(VectorManifold(4), Eigen::VectorXd::Ones(4)); }
 
 TEST(PoseManifold, DifferenceJacobianHoldsFarApart) { expectDifferenceJacobian(PoseManifold(), kPose); }

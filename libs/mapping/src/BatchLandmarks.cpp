@@ -10,7 +10,8 @@ namespace lintel {
 namespace {
 
 /// Holds the length of a homogeneous point, which nothing observes. Instead of a manifold: all landmarks then have
-/// tangents of four and residuals of two, for which Ceres has code of fixed size (and hence the second, empty residual).
+/// tangents of four and residuals of two, for which Ceres has code of fixed size (and hence the second, empty
+/// residual).
 class UnitLength final : public ceres::SizedCostFunction<2, kPointSize> {
  public:
   bool Evaluate(double const* const* parameters, double* residuals, double** jacobians) const override {

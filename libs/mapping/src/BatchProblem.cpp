@@ -69,8 +69,13 @@ class ProgressCallback : public ceres::IterationCallback {
 BatchProblem::BatchProblem(const Rig& calibrated, const EstimatorParams& estimator, MapMaterial& material,
                            const std::vector<bool>& use_point, const std::vector<bool>& use_line,
                            std::size_t most_views, const std::vector<ParallelLines>& groups)
-    : calibrated_(calibrated), estimator_(estimator), material_(material), most_views_(most_views), groups_(groups),
-      point_loss_(estimator.factors.point_loss_width), line_loss_(estimator.factors.line_loss_width),
+    : calibrated_(calibrated),
+      estimator_(estimator),
+      material_(material),
+      most_views_(most_views),
+      groups_(groups),
+      point_loss_(estimator.factors.point_loss_width),
+      line_loss_(estimator.factors.line_loss_width),
       structural_loss_(estimator.degeneracy.structural_loss_width),
       problem_(std::make_unique<ceres::Problem>(problemOptions())) {
   for (std::size_t i = 0; i < material.points.size(); ++i)
@@ -189,13 +194,15 @@ void BatchProblem::addImu() {
   }
 }
 
-BatchProblem::Summary BatchProblem::solve(int max_iterations, double tolerance, const std::function<void(int)>& progress) {
+BatchProblem::Summary BatchProblem::solve(int max_iterations, double tolerance,
+                                          const std::function<void(int)>& progress) {
   auto ordering = std::make_shared<ceres::ParameterBlockOrdering>();
   for (std::size_t i = 0; i < points_.size(); ++i) ordering->AddElementToGroup(at(points_at_ + i * kPointSize), 0);
   for (std::size_t i = 0; i < lines_.size(); ++i) ordering->AddElementToGroup(at(lines_at_ + i * kLineSize), 0);
   ordering->AddElementToGroup(at(extrinsics_at_), 1);
   ordering->AddElementToGroup(at(correction_at_), 1);
-  for (std::size_t g = 0; g < groups_.size(); ++g) ordering->AddElementToGroup(at(directions_at_ + g * kDirectionSize), 1);
+  for (std::size_t g = 0; g < groups_.size(); ++g)
+    ordering->AddElementToGroup(at(directions_at_ + g * kDirectionSize), 1);
   for (std::size_t k = 0; k < material_.keyframes.size(); ++k) {
     ordering->AddElementToGroup(at(poseAt(k)), 1);
     ordering->AddElementToGroup(at(motionAt(k)), 1);
@@ -206,8 +213,8 @@ BatchProblem::Summary BatchProblem::solve(int max_iterations, double tolerance, 
   options.max_num_iterations = max_iterations;
   options.function_tolerance = tolerance;
   options.num_threads = 1;
-  // A landmark with a wrong sighting bounces, and a step that is refused for it leaves weak directions, as the scale, where
-  // they are: a few steps may raise the cost if it comes down below what it was.
+  // A landmark with a wrong sighting bounces, and a step that is refused for it leaves weak directions, as the scale,
+  // where they are: a few steps may raise the cost if it comes down below what it was.
   options.use_nonmonotonic_steps = true;
   options.logging_type = ceres::SILENT;
   ProgressCallback callback(progress);

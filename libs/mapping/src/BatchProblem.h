@@ -28,8 +28,8 @@ struct ParallelLines {
 
 /// One adjustment as a Ceres problem: makes blocks and residuals from a material, solves, writes back.
 ///
-/// Ceres orders blocks by their addresses: all lie in one array (points, lines, calibration, directions, keyframes in their order),
-/// so that the same sums are made in the same order every run.
+/// Ceres orders blocks by their addresses: all lie in one array (points, lines, calibration, directions, keyframes in
+/// their order), so that the same sums are made in the same order every run.
 class BatchProblem {
  public:
   /// `use_point`, `use_line`: which landmarks take part, by place in the material; `most_views` of each have residuals.
@@ -44,7 +44,8 @@ class BatchProblem {
     std::size_t residuals = 0;
     double cost_before = 0, cost_after = 0;
   };
-  /// Ends when an iteration lowers the cost by less than `tolerance` of it. `progress` is called after every iteration with their number.
+  /// Ends when an iteration lowers the cost by less than `tolerance` of it. `progress` is called after every iteration
+  /// with their number.
   Summary solve(int max_iterations, double tolerance, const std::function<void(int)>& progress);
 
   /// Keyframes and calibration as solved, into the material. Landmarks are estimated anew by MapFitting.
@@ -70,9 +71,9 @@ class BatchProblem {
   const EstimatorParams& estimator_;
   MapMaterial& material_;
   std::size_t most_views_;
-  std::vector<std::size_t> points_, lines_;     // places in the material
+  std::vector<std::size_t> points_, lines_;  // places in the material
   std::vector<ParallelLines> groups_;
-  std::vector<std::int64_t> keyframe_places_;   // by id
+  std::vector<std::int64_t> keyframe_places_;  // by id
   std::vector<double> values_;
   std::size_t points_at_ = 0, lines_at_ = 0, extrinsics_at_ = 0, correction_at_ = 0, directions_at_ = 0,
               keyframes_at_ = 0;

@@ -10,8 +10,8 @@
 #include "LineExtent.h"
 #include "LineGroups.h"
 #include "MapFitting.h"
-#include "lintel/mapping/MapBuilder.h"
 #include "lintel/geometry/Rotation.h"
+#include "lintel/mapping/MapBuilder.h"
 
 namespace lintel {
 
@@ -22,8 +22,7 @@ std::vector<ParallelLines> parallelLines(const MapParams& params, const MapMater
   const LineMap map = drawMap(params, material);
   const std::vector<bool> certain = certainGroups(map);
   std::vector<ParallelLines> groups;
-  for (const MapGroup& group : map.groups)
-    groups.push_back({group.direction_w, sigmaOf(group), {}});
+  for (const MapGroup& group : map.groups) groups.push_back({group.direction_w, sigmaOf(group), {}});
   auto drawn = map.lines.begin();
   for (std::size_t i = 0; i < material.lines.size() && drawn != map.lines.end(); ++i) {
     if (material.lines[i].id != drawn->id) continue;
@@ -31,7 +30,8 @@ std::vector<ParallelLines> parallelLines(const MapParams& params, const MapMater
     if (drawn->group >= 0 && certain[group]) groups[group].lines.push_back(i);
     ++drawn;
   }
-  groups.erase(std::remove_if(groups.begin(), groups.end(), [](const ParallelLines& g) { return g.lines.empty(); }), groups.end());
+  groups.erase(std::remove_if(groups.begin(), groups.end(), [](const ParallelLines& g) { return g.lines.empty(); }),
+               groups.end());
   return groups;
 }
 
@@ -47,7 +47,8 @@ std::size_t inliersOf(const PointRecord& point) {
 }
 
 /// Median over the held-out points of their mean error, estimated with the given cameras.
-double heldOutError(const MapParams& map, const MapMaterial& cameras_of, std::vector<PointRecord> points, int min_views) {
+double heldOutError(const MapParams& map, const MapMaterial& cameras_of, std::vector<PointRecord> points,
+                    int min_views) {
   const KeyframeCameras cameras(cameras_of);
   PointFitParams fit;
   fit.max_error_px = 1e3;  // all views count: a result must not look good by calling them outliers
@@ -167,7 +168,8 @@ RefinementReport BatchRefinement::adjust(MapMaterial& material, const Refinement
     if (round == 0) report.imu_before = problem.imuError();
     // landmarks are chosen and judged anew after every round but the last: those need not converge
     const auto summary = problem.solve(params_.max_iterations, last ? 1e-4 : 1e-2, [&](int iteration) {
-      if (progress) progress((round + std::min(1.0, static_cast<double>(iteration) / params_.max_iterations)) / params_.rounds);
+      if (progress)
+        progress((round + std::min(1.0, static_cast<double>(iteration) / params_.max_iterations)) / params_.rounds);
     });
     if (!summary.usable) {
       report.verdict = "not refined: the adjustment found no solution";
@@ -194,8 +196,9 @@ RefinementReport BatchRefinement::adjust(MapMaterial& material, const Refinement
     report.verdict = "not refined: " + reason;
     return report;
   }
-  report.verdict = text("refined: keyframes moved by up to %.3f m; points without part in it fit to %.2f px (before %.2f)",
-                        report.moved_m, report.held_out_after_px, report.held_out_before_px);
+  report.verdict =
+      text("refined: keyframes moved by up to %.3f m; points without part in it fit to %.2f px (before %.2f)",
+           report.moved_m, report.held_out_after_px, report.held_out_before_px);
   material.points.insert(material.points.end(), held_out.begin(), held_out.end());
   std::sort(material.points.begin(), material.points.end(),
             [](const PointRecord& a, const PointRecord& b) { return a.id < b.id; });

@@ -9,7 +9,8 @@
 
 namespace lintel {
 
-std::optional<std::pair<double, double>> seenStretch(const KeyframeCameras& cameras, const LineRecord& line, double share) {
+std::optional<std::pair<double, double>> seenStretch(const KeyframeCameras& cameras, const LineRecord& line,
+                                                     double share) {
   std::map<TrackId, std::vector<std::pair<double, double>>> intervals;
   for (const LineView& v : line.views) {
     std::pair<double, double> stretch;
@@ -19,13 +20,16 @@ std::optional<std::pair<double, double>> seenStretch(const KeyframeCameras& came
   for (const auto& [track, pieces] : intervals) {
     const auto piece = coveredStretch(pieces, share);
     if (!piece) continue;
-    whole = whole ? std::make_pair(std::min(whole->first, piece->first), std::max(whole->second, piece->second)) : *piece;
+    whole =
+        whole ? std::make_pair(std::min(whole->first, piece->first), std::max(whole->second, piece->second)) : *piece;
   }
   return whole;
 }
 
 Segment3 segmentOf(const KeyframeCameras& cameras, const LineRecord& line, const std::pair<double, double>& stretch) {
-  const auto at = [&](double along) -> Eigen::Vector3d { return line.estimate.middle_w + along * line.estimate.direction_w; };
+  const auto at = [&](double along) -> Eigen::Vector3d {
+    return line.estimate.middle_w + along * line.estimate.direction_w;
+  };
   bool forward = true;
   for (const LineView& v : line.views) {
     std::pair<double, double> seen;

@@ -36,7 +36,8 @@ std::vector<FitView> fitViews(const KeyframeCameras& cameras, const LineRecord& 
   std::vector<FitView> views;
   for (const LineView& v : line.views) {
     if (!v.inlier || !cameras.contains(v.keyframe)) continue;
-    views.push_back({cameras.R_c_w(v.keyframe), cameras.T_w_c(v.keyframe).p,
+    views.push_back({cameras.R_c_w(v.keyframe),
+                     cameras.T_w_c(v.keyframe).p,
                      {cameras.ray(v.start_px), cameras.ray(v.end_px)},
                      cameras.camera().meanFocal() / std::max(0.1, static_cast<double>(v.sigma_px))});
   }
@@ -63,8 +64,8 @@ class LogProduct {
   double product_ = 1, log_ = 0;
 };
 
-/// The tie's residuals: what d has across the shared direction, r = B_tie^T d / sigma [Lim2021, structural constraint], and
-/// the distances of its points across the line, r = B^T (p - m) / sigma.
+/// The tie's residuals: what d has across the shared direction, r = B_tie^T d / sigma [Lim2021, structural constraint],
+/// and the distances of its points across the line, r = B^T (p - m) / sigma.
 void addTie(const LineTie& tie, const Eigen::Vector3d& m, const Eigen::Vector3d& d, Normal& normal) {
   const Eigen::Matrix<double, 3, 2> B = tangentBasis(d);
   const auto add = [&](const Eigen::Vector2d& r, const Eigen::Matrix<double, 2, 4>& J) {
@@ -114,8 +115,8 @@ Normal normalEquations(const FitData& data, const Eigen::Vector3d& m, const Eige
   return normal;
 }
 
-/// Start from all observation planes [Lim2021, eq. make_plane]: the direction is what all normals are perpendicular to, or
-/// the tie's.
+/// Start from all observation planes [Lim2021, eq. make_plane]: the direction is what all normals are perpendicular to,
+/// or the tie's.
 bool intersectPlanes(const std::vector<FitView>& views, const std::optional<LineTie>& tie, LineEstimate& line) {
   Eigen::Matrix3d normals = Eigen::Matrix3d::Zero();
   Eigen::Vector3d b = Eigen::Vector3d::Zero();
@@ -203,8 +204,8 @@ void judgeViews(const KeyframeCameras& cameras, const LineFitParams& params, Lin
   double sum = 0;
   int inliers = 0;
   for (LineView& v : line.views) {
-    const double error = cameras.contains(v.keyframe) ? viewError(cameras, line.estimate, v)
-                                                      : std::numeric_limits<double>::infinity();
+    const double error =
+        cameras.contains(v.keyframe) ? viewError(cameras, line.estimate, v) : std::numeric_limits<double>::infinity();
     v.inlier = error <= params.max_error_px;
     if (v.inlier) sum += error, ++inliers;
   }

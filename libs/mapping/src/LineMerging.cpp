@@ -24,8 +24,8 @@ struct Candidate {
   bool operator<(const Candidate& o) const { return std::tie(score, a, b) < std::tie(o.score, o.a, o.b); }
 };
 
-/// How far apart two lines are in space, squared, in standard deviations: their positions and directions across `a` where
-/// that was seen.
+/// How far apart two lines are in space, squared, in standard deviations: their positions and directions across `a`
+/// where that was seen.
 double apartness(const LineEstimate& a, const LineEstimate& b) {
   const Eigen::Matrix<double, 3, 2> B = tangentBasis(a.direction_w);
   const double along = (a.middle_w - b.middle_w).dot(a.direction_w) / b.direction_w.dot(a.direction_w);
@@ -42,9 +42,14 @@ double apartness(const LineEstimate& a, const LineEstimate& b) {
 
 class LineMerger {
  public:
-  LineMerger(const KeyframeCameras& cameras, const LineFitParams& fit, const MergeParams& params,
-             double drift_px, std::vector<LineRecord>& lines)
-      : cameras_(cameras), fit_(fit), params_(params), drift_px_(drift_px), lines_(lines), roots_(lines.size()),
+  LineMerger(const KeyframeCameras& cameras, const LineFitParams& fit, const MergeParams& params, double drift_px,
+             std::vector<LineRecord>& lines)
+      : cameras_(cameras),
+        fit_(fit),
+        params_(params),
+        drift_px_(drift_px),
+        lines_(lines),
+        roots_(lines.size()),
         segments_(lines.size()) {
     std::iota(roots_.begin(), roots_.end(), std::size_t{0});
     for (std::size_t i = 0; i < lines.size(); ++i) segments_[i] = drawn(lines[i]);
@@ -206,7 +211,8 @@ class LineMerger {
     // both must be explained, also where one has many more views than the other
     const auto kept = [&](const LineRecord& part) {
       std::ptrdiff_t n = 0;
-      for (const LineView& v : part.views) n += v.inlier && viewError(cameras_, joint.estimate, v) <= fit_.max_error_px + drift_px;
+      for (const LineView& v : part.views)
+        n += v.inlier && viewError(cameras_, joint.estimate, v) <= fit_.max_error_px + drift_px;
       return n;
     };
     if (10 * kept(a) < 8 * before_a || 10 * kept(b) < 8 * before_b) return false;

@@ -35,7 +35,8 @@ class LineSpacer {
     const auto beside = neighbours();
     std::vector<std::size_t> order(lines_.size());
     std::iota(order.begin(), order.end(), std::size_t{0});
-    std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return evidence_[a] > evidence_[b]; });
+    std::stable_sort(order.begin(), order.end(),
+                     [&](std::size_t a, std::size_t b) { return evidence_[a] > evidence_[b]; });
     std::vector<bool> kept(lines_.size(), false);
     for (const std::size_t i : order) kept[i] = !runsBeside(i, beside[i], kept);
     return kept;
@@ -76,7 +77,9 @@ class LineSpacer {
     const Segment3& s = lines_[i].segment_w;
     std::vector<std::pair<double, double>> stretches;
     for (const std::size_t j : neighbours)
-      if (kept[j]) addStretch(s, lines_[j].segment_w, evidence_[j] >= kMuchBetter * evidence_[i] ? 2 * widths_[i] : widths_[i], stretches);
+      if (kept[j])
+        addStretch(s, lines_[j].segment_w, evidence_[j] >= kMuchBetter * evidence_[i] ? 2 * widths_[i] : widths_[i],
+                   stretches);
     std::sort(stretches.begin(), stretches.end());
     double covered = 0, end = 0;
     for (const auto& [from, to] : stretches) {

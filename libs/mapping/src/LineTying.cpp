@@ -10,14 +10,13 @@ namespace lintel {
 
 namespace {
 
-constexpr double kLeastInliers = 0.9;       // share of a line's views that must still agree
-constexpr double kMoreError_px = 0.3;       // by which they may agree less
+constexpr double kLeastInliers = 0.9;  // share of a line's views that must still agree
+constexpr double kMoreError_px = 0.3;  // by which they may agree less
 
 /// Whether the tied line does for the views as well as the free one.
 bool viewsAgree(const LineRecord& tied, const LineRecord& free) {
   const int before = free.known ? inliersOf(free) : static_cast<int>(free.views.size());
-  return inliersOf(tied) >= kLeastInliers * before &&
-         tied.error_px <= (free.known ? free.error_px : 0) + kMoreError_px;
+  return inliersOf(tied) >= kLeastInliers * before && tied.error_px <= (free.known ? free.error_px : 0) + kMoreError_px;
 }
 
 /// Ties a line to the group whose direction its views like best.

@@ -38,8 +38,9 @@ template <class Record>
 void keepKeyframesOnly(const std::set<FrameId>& keyframes, std::vector<Record>& records) {
   for (Record& record : records) {
     auto& views = record.views;
-    views.erase(std::remove_if(views.begin(), views.end(), [&](const auto& v) { return keyframes.count(v.keyframe) == 0; }),
-                views.end());
+    views.erase(
+        std::remove_if(views.begin(), views.end(), [&](const auto& v) { return keyframes.count(v.keyframe) == 0; }),
+        views.end());
     std::stable_sort(views.begin(), views.end(), [](const auto& a, const auto& b) { return a.keyframe < b.keyframe; });
   }
   records.erase(std::remove_if(records.begin(), records.end(), [](const Record& r) { return r.views.size() < 2; }),

@@ -8,7 +8,8 @@ namespace {
 // Smallest bytes of one record, to bound what its announced number may reserve.
 constexpr std::size_t kKeyframeSize = 8 + 8 + 7 * 8 + 9 * 8, kPointObservationSize = 8 + 2 * 8,
                       kPointSize = 8 + 3 * 8 + 8 + 16 + 8, kLineObservationSize = 8 + 4 * 8,
-                      kLineSize = 8 + 6 * 8 + 16 + 16 + 1 + 4 + 8, kTrajectorySize = 8 + 7 * 8, kGroupSize = 8 + 3 * 8 + 8;
+                      kLineSize = 8 + 6 * 8 + 16 + 16 + 1 + 4 + 8, kTrajectorySize = 8 + 7 * 8,
+                      kGroupSize = 8 + 3 * 8 + 8;
 
 enum LineFlag : std::uint8_t { kDegenerate = 1, kConstrained = 2 };
 

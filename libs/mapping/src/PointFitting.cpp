@@ -122,7 +122,8 @@ bool fitPoint(const KeyframeCameras& cameras, const PointFitParams& params, Poin
   for (int pass = 0; pass < 3; ++pass) {
     std::vector<FitView> views;
     for (const PointView& v : point.views)
-      if (v.inlier) views.push_back({cameras.R_c_w(v.keyframe), cameras.T_w_c(v.keyframe).p, cameras.camera().normalise(v.px)});
+      if (v.inlier)
+        views.push_back({cameras.R_c_w(v.keyframe), cameras.T_w_c(v.keyframe).p, cameras.camera().normalise(v.px)});
     found = views.size() >= 2 && estimate(views, params, cameras.camera().meanFocal(), point);
     if (!found) break;
     point.known = true;

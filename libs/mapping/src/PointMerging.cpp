@@ -57,10 +57,12 @@ int mergePoints(const KeyframeCameras& cameras, const PointFitParams& fit, const
   };
   int merged = 0;
   for (const Candidate& candidate : candidates) {
-    const std::size_t a = std::min(root(candidate.a), root(candidate.b)), b = std::max(root(candidate.a), root(candidate.b));
+    const std::size_t a = std::min(root(candidate.a), root(candidate.b)),
+                      b = std::max(root(candidate.a), root(candidate.b));
     if (a == b || shareKeyframe(points[a], points[b])) continue;
     const double most_px = 3 * params.point_max_error_px;
-    if (!projectsOnto(cameras, points[a], points[b], most_px) || !projectsOnto(cameras, points[b], points[a], most_px)) continue;
+    if (!projectsOnto(cameras, points[a], points[b], most_px) || !projectsOnto(cameras, points[b], points[a], most_px))
+      continue;
     PointRecord joint = points[a];
     joint.id = std::min(points[a].id, points[b].id);
     joint.views.clear();

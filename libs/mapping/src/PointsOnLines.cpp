@@ -10,12 +10,12 @@ namespace lintel {
 
 namespace {
 
-constexpr double kOn_px = 1.5;              // from a view's segment; more is beside it
-constexpr double kBeyond_px = 5;            // its ends: corners are there
-constexpr int kLeastShared = 3;             // keyframes that saw both
-constexpr double kLeastShare = 0.9;         // of those, in which the point is on the line
-constexpr double kMostSigma = 0.05;         // of a point's place, of its distance
-constexpr double kAgree = 2.5;              // standard deviations between points on one line
+constexpr double kOn_px = 1.5;       // from a view's segment; more is beside it
+constexpr double kBeyond_px = 5;     // its ends: corners are there
+constexpr int kLeastShared = 3;      // keyframes that saw both
+constexpr double kLeastShare = 0.9;  // of those, in which the point is on the line
+constexpr double kMostSigma = 0.05;  // of a point's place, of its distance
+constexpr double kAgree = 2.5;       // standard deviations between points on one line
 
 /// Distance of a pixel from a segment; infinity beyond its ends.
 double distanceFrom(const LineView& view, const Eigen::Vector2d& px) {

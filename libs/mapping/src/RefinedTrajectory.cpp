@@ -82,7 +82,8 @@ std::vector<std::pair<std::int64_t, Pose>> refinedTrajectory(const MapMaterial& 
     return std::make_pair(frame.first, T_w_e * frame.second);
   };
   std::size_t next = 0;
-  while (next < frames.size() && frames[next].first < refined.front().t_ns) result.push_back(movedWith(0, frames[next++]));
+  while (next < frames.size() && frames[next].first < refined.front().t_ns)
+    result.push_back(movedWith(0, frames[next++]));
   for (std::size_t k = 0; k < refined.size(); ++k) {
     if (next < frames.size() && frames[next].first == refined[k].t_ns) {
       result.emplace_back(frames[next++].first, refined[k].T_w_b);

@@ -14,9 +14,8 @@ std::optional<std::pair<double, double>> coveredStretch(const std::vector<std::p
     events.emplace_back(std::min(a, b), +1);
     events.emplace_back(std::max(a, b), -1);
   }
-  std::sort(events.begin(), events.end(), [](const auto& x, const auto& y) {
-    return x.first != y.first ? x.first < y.first : x.second > y.second;
-  });
+  std::sort(events.begin(), events.end(),
+            [](const auto& x, const auto& y) { return x.first != y.first ? x.first < y.first : x.second > y.second; });
   std::optional<double> from;
   double to = 0;
   int depth = 0;

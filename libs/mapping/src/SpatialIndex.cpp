@@ -15,7 +15,8 @@ void SpatialIndex::add(std::size_t thing, const Eigen::Vector3d& p_w) {
   constexpr double kFarthest = 1e15;  // beyond: no cube has a number
   const Eigen::Vector3d c = (p_w / cell_m_).array().floor();
   if (!c.allFinite() || c.cwiseAbs().maxCoeff() > kFarthest) return;
-  entries_.push_back({static_cast<std::int64_t>(c.x()), static_cast<std::int64_t>(c.y()), static_cast<std::int64_t>(c.z()), thing});
+  entries_.push_back(
+      {static_cast<std::int64_t>(c.x()), static_cast<std::int64_t>(c.y()), static_cast<std::int64_t>(c.z()), thing});
 }
 
 std::vector<std::pair<std::size_t, std::size_t>> SpatialIndex::pairs() const {

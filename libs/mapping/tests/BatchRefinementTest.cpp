@@ -118,7 +118,8 @@ TEST_F(BatchRefinementTest, LandmarksComeOutWhereTheyAre) {
   int lines = 0;
   for (const MapLine& line : drawMap({}, material_).lines) {
     const Segment3& segment = flight_.lines_w[flight_.line_of_track[line.id]];
-    EXPECT_LT(lineAngle(T.T_a_b.q * line.segment_w.direction(), segment.direction()), 0.02 + 3 * line.sigma_direction_rad);
+    EXPECT_LT(lineAngle(T.T_a_b.q * line.segment_w.direction(), segment.direction()),
+              0.02 + 3 * line.sigma_direction_rad);
     const Eigen::Vector3d middle = T * line.segment_w.midpoint();
     EXPECT_LT((middle - segment.start).cross(segment.direction()).norm(), 0.02 + 3 * line.sigma_distance_m);
     ++lines;

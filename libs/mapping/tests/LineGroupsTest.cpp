@@ -14,7 +14,8 @@ std::vector<MapLine> linesAlong(const std::vector<std::pair<Eigen::Vector3d, int
     for (int i = 0; i < count; ++i) {
       const Eigen::Vector3d start(0.3 * i, 1, 2);
       // every second one the other way round, all of them a little turned
-      const Eigen::Vector3d d = expRotation(Eigen::Vector3d(0.004, -0.006, 0.005) * (i % 3 - 1)) * direction.normalized();
+      const Eigen::Vector3d d =
+          expRotation(Eigen::Vector3d(0.004, -0.006, 0.005) * (i % 3 - 1)) * direction.normalized();
       MapLine line;
       line.id = lines.size();
       line.segment_w = {start, start + (i % 2 ? -1.0 : 1.0) * d};
@@ -47,7 +48,8 @@ TEST(LineGroups, FewLinesAreNoGroup) {
 
 TEST(LineGroups, AGroupIsCertainFromATenthOfTheLengthOn) {
   LineMap map;
-  map.lines = linesAlong({{{1, 0, 0}, 14}, {{0, 0, 1}, 20}, {{0, 1, 0}, 12}, {{1, 0, 1}, 5}, {{1, 1, 1}, 2}, {{-1, 2, 1}, 2}});
+  map.lines =
+      linesAlong({{{1, 0, 0}, 14}, {{0, 0, 1}, 20}, {{0, 1, 0}, 12}, {{1, 0, 1}, 5}, {{1, 1, 1}, 2}, {{-1, 2, 1}, 2}});
   map.groups = findGroups({}, map.lines);
   ASSERT_EQ(map.groups.size(), 4u);
   EXPECT_EQ(certainGroups(map), (std::vector<bool>{true, true, true, false})) << "5 of 55 lines are no tenth";

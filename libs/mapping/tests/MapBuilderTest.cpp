@@ -129,7 +129,8 @@ TEST_F(MapBuilderTest, LinesWithoutEvidenceAreLeftOut) {
   const auto beside = [&](double x) {
     return Segment3{upright_.start + Eigen::Vector3d(x, 0, 0), upright_.end + Eigen::Vector3d(x, 0, 0)};
   };
-  RetiredLine few = lineOf(2, beside(-0.4), 2), dot = lineOf(6, {{0.4, 0, 4}, {0.4, 0.01, 4}}), good = lineOf(7, upright_),
+  RetiredLine few = lineOf(2, beside(-0.4), 2), dot = lineOf(6, {{0.4, 0, 4}, {0.4, 0.01, 4}}),
+              good = lineOf(7, upright_),
               along = lineOf(8, {{0.2, 0.5, 4}, {1.4, 0.5, 4}}),  // in the plane of the flight: depth unknown
       torn = lineOf(9, beside(0.4));
   for (std::size_t i = 1; i < 3; ++i) {  // half of its views are of other things
@@ -148,7 +149,8 @@ TEST_F(MapBuilderTest, DegenerateLinesAreUsedDroppedOrConstrained) {
     return Segment3{{x, y, 3}, {x + length, y + 0.3 * length, 3}};
   };
   for (TrackId id = 1; id <= 5; ++id)
-    update_.lines.push_back(lineOf(id, parallel(0.2 * static_cast<double>(id), 0.3 * static_cast<double>(id) - 1.2, 1)));
+    update_.lines.push_back(
+        lineOf(id, parallel(0.2 * static_cast<double>(id), 0.3 * static_cast<double>(id) - 1.2, 1)));
   const Segment3 degenerate_w = parallel(0.2, -1.2, 0.4);
   RetiredLine line = lineOf(9, degenerate_w, 3);
   for (std::size_t i = 0; i < 3; ++i) line.sightings[i].end_px.y() += i % 2 ? 1 : -1;
@@ -205,7 +207,8 @@ TEST_F(MapBuilderTest, PiecesOfOneEdgeBecomeOneSegmentWithAllObservations) {
 }
 
 TEST_F(MapBuilderTest, PointsWithoutEvidenceAreLeftOut) {
-  RetiredPoint few = pointOf(1, {0.5, 0.2, 4}, 2), vague = pointOf(2, {0.5, 0.2, 150}), good = pointOf(3, {0.6, 0.1, 5});
+  RetiredPoint few = pointOf(1, {0.5, 0.2, 4}, 2), vague = pointOf(2, {0.5, 0.2, 150}),
+               good = pointOf(3, {0.6, 0.1, 5});
   update_.points = {few, vague, good};
   const LineMap map = build();
   ASSERT_EQ(map.points.size(), 1u);
@@ -230,7 +233,8 @@ TEST_F(MapBuilderTest, SightingsInFramesThatAreNoKeyframesDoNotCount) {
 }
 
 TEST_F(MapBuilderTest, IdsAscendInEveryList) {
-  update_.lines = {lineOf(9, upright_), lineOf(2, {{0.2, -0.7, 3}, {0.2, 0.6, 3}}), lineOf(5, {{1.4, -0.7, 4}, {1.4, 0.6, 4}})};
+  update_.lines = {lineOf(9, upright_), lineOf(2, {{0.2, -0.7, 3}, {0.2, 0.6, 3}}),
+                   lineOf(5, {{1.4, -0.7, 4}, {1.4, 0.6, 4}})};
   update_.points = {pointOf(8, {0.5, 0.2, 4}), pointOf(1, {0.6, 0.1, 5})};
   std::swap(update_.keyframes[0], update_.keyframes[4]);
   const LineMap map = build();
@@ -245,7 +249,8 @@ TEST_F(MapBuilderTest, IdsAscendInEveryList) {
 
 TEST_F(MapBuilderTest, ATrackThatOutlivesARestartGetsAnIdOfItsOwn) {
   // after a failure the estimator has a new world: the same track is handed over again, as another line and point
-  update_.lines = {lineOf(5, upright_), lineOf(9, {{1.4, -0.7, 4}, {1.4, 0.6, 4}}), lineOf(5, {{0.2, -0.7, 3}, {0.2, 0.6, 3}})};
+  update_.lines = {lineOf(5, upright_), lineOf(9, {{1.4, -0.7, 4}, {1.4, 0.6, 4}}),
+                   lineOf(5, {{0.2, -0.7, 3}, {0.2, 0.6, 3}})};
   update_.points = {pointOf(5, {0.5, 0.2, 4}), pointOf(5, {0.6, 0.1, 5}), pointOf(6, {0.6, 0.3, 5})};
   const LineMap map = build();
   ASSERT_EQ(map.lines.size(), 3u);

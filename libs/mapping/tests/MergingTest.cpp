@@ -84,7 +84,8 @@ TEST_F(MergingTest, LinesThatCrossStayTwo) {
 }
 
 TEST_F(MergingTest, APointFoundAgainIsOnePoint) {
-  std::vector<PointRecord> points{pointOf(material_, 7, {1.7, 0.2, 5}, 0, 3), pointOf(material_, 9, {1.7, 0.2, 5}, 5, 7)};
+  std::vector<PointRecord> points{pointOf(material_, 7, {1.7, 0.2, 5}, 0, 3),
+                                  pointOf(material_, 9, {1.7, 0.2, 5}, 5, 7)};
   EXPECT_EQ(merge(points), 1);
   ASSERT_EQ(points.size(), 1u);
   EXPECT_EQ(points[0].id, 7u);
@@ -111,7 +112,8 @@ TEST_F(MergingTest, APassThatDriftedIsJoinedWhereTheTrajectoryMayStillMove) {
 
 TEST_F(MergingTest, ADriftedPassBesideTwoLinesIsLeftAlone) {
   drift_px_ = 4;
-  std::vector<LineRecord> lines{lineOf(material_, 1, upright_, 0, 3), lineOf(material_, 2, besides(upright_, 0.07), 0, 3),
+  std::vector<LineRecord> lines{lineOf(material_, 1, upright_, 0, 3),
+                                lineOf(material_, 2, besides(upright_, 0.07), 0, 3),
                                 lineOf(material_, 3, besides(upright_, 0.03), 4, 7)};
   EXPECT_EQ(merge(lines), 0) << "either could be meant";
 }
@@ -140,12 +142,14 @@ TEST_F(MergingTest, ATrackThatTheLineDoesNotExplainIsTakenOutAgain) {
 }
 
 TEST_F(MergingTest, PointsInOneImageAreTwo) {
-  std::vector<PointRecord> points{pointOf(material_, 7, {1.7, 0.2, 5}, 0, 3), pointOf(material_, 9, {1.705, 0.2, 5}, 3, 7)};
+  std::vector<PointRecord> points{pointOf(material_, 7, {1.7, 0.2, 5}, 0, 3),
+                                  pointOf(material_, 9, {1.705, 0.2, 5}, 3, 7)};
   EXPECT_EQ(merge(points), 0);
 }
 
 TEST_F(MergingTest, PointsAFewPixelsApartAreTwo) {
-  std::vector<PointRecord> points{pointOf(material_, 7, {1.7, 0.2, 5}, 0, 3), pointOf(material_, 9, {1.75, 0.2, 5}, 4, 7)};
+  std::vector<PointRecord> points{pointOf(material_, 7, {1.7, 0.2, 5}, 0, 3),
+                                  pointOf(material_, 9, {1.75, 0.2, 5}, 4, 7)};
   EXPECT_EQ(merge(points), 0);
 }
 

@@ -27,7 +27,8 @@ class RefinedTrajectoryTest : public testing::Test {
     causal_.keyframes[1].imu = imu;
     for (int i = 0; i <= 12; ++i) {
       const double t = 0.1 * i;
-      causal_.trajectory.emplace_back(kSecond / 10 * i, Pose{{1, 0, 0, 0}, {kAcceleration / 2 * t * t, 0.03 * (i % 2), 0}});
+      causal_.trajectory.emplace_back(kSecond / 10 * i,
+                                      Pose{{1, 0, 0, 0}, {kAcceleration / 2 * t * t, 0.03 * (i % 2), 0}});
     }
   }
   MapMaterial causal_;
@@ -39,7 +40,8 @@ TEST_F(RefinedTrajectoryTest, TheImuCarriesStatesBetweenKeyframes) {
   for (int i = 0; i <= 10; ++i) {
     const double t = 0.1 * i;
     EXPECT_EQ(refined[static_cast<std::size_t>(i)].first, kSecond / 10 * i);
-    EXPECT_LT((refined[static_cast<std::size_t>(i)].second.p - Eigen::Vector3d(kAcceleration / 2 * t * t, 0, 0)).norm(), 1e-9)
+    EXPECT_LT((refined[static_cast<std::size_t>(i)].second.p - Eigen::Vector3d(kAcceleration / 2 * t * t, 0, 0)).norm(),
+              1e-9)
         << "the causal jitter is gone";
   }
 }

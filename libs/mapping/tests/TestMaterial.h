@@ -17,7 +17,8 @@ inline MapMaterial materialAlongX(std::size_t n = 5) {
     RetiredKeyframe k;
     k.id = id;
     k.t_ns = 1000 + static_cast<std::int64_t>(id) * 100'000'000;
-    k.T_w_b = Pose{Eigen::Quaterniond::Identity(), {0.5 * static_cast<double>(id), 0, 0}} * material.rig.T_b_c.inverse();
+    k.T_w_b =
+        Pose{Eigen::Quaterniond::Identity(), {0.5 * static_cast<double>(id), 0, 0}} * material.rig.T_b_c.inverse();
     material.keyframes.push_back(k);
   }
   return material;

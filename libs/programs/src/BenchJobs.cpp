@@ -36,8 +36,12 @@ std::string hashOf(const std::string& text) {
 
 /// What decides the result, but not where files happen to lie: a run made on another machine is the same run.
 std::string keyOf(const BenchJob& job, const BenchRecording& recording, const BenchConfiguration& configuration) {
-  const std::vector<std::string> words{LINTEL_VERSION, job.id, shortest(job.from_s), shortest(job.to_s),
-                                       shellLine(job.simulation), contentOf(configuration.config),
+  const std::vector<std::string> words{LINTEL_VERSION,
+                                       job.id,
+                                       shortest(job.from_s),
+                                       shortest(job.to_s),
+                                       shellLine(job.simulation),
+                                       contentOf(configuration.config),
                                        shellLine(configuration.settings),
                                        recording.groundtruth.empty() ? "" : contentOf(recording.groundtruth)};
   return hashOf(shellLine(words));
@@ -71,8 +75,10 @@ std::vector<BenchJob> jobsOf(const BenchSuite& suite, const fs::path& out) {
       for (std::size_t r = 0; r < suite.recordings.size(); ++r) {
         const BenchRecording& recording = suite.recordings[r];
         if (recording.absent()) continue;
-        if (!recording.simulated()) add(r, c, start_s, nullptr);
-        else for (const std::uint64_t& seed : recording.seeds) add(r, c, start_s, &seed);
+        if (!recording.simulated())
+          add(r, c, start_s, nullptr);
+        else
+          for (const std::uint64_t& seed : recording.seeds) add(r, c, start_s, &seed);
       }
   return jobs;
 }

@@ -13,9 +13,9 @@ namespace lintel {
 struct BenchJob {
   std::string id;  ///< recording/configuration/repetition
   std::size_t recording = 0, configuration = 0;
-  std::string repetition;      ///< "from0", "seed1-from0"
+  std::string repetition;  ///< "from0", "seed1-from0"
   double from_s = 0, to_s = 0;
-  std::string recording_path;  ///< where the recording is, or will be once it is simulated
+  std::string recording_path;           ///< where the recording is, or will be once it is simulated
   std::vector<std::string> simulation;  ///< words for lintel-sim but -o; empty: not simulated
   std::filesystem::path folder;
   std::string key;  ///< changes when what is run changes

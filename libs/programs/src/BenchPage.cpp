@@ -21,7 +21,9 @@ constexpr std::size_t kPicturedRecordings = 30;  // a page of a thousand would n
 using JobRun = std::pair<BenchJob, BenchRun>;
 
 Similarity transformOf(const nlohmann::ordered_json& evaluation, const std::string& part) {
-  const auto number = [&](const std::string& path) { return BenchRun::number(evaluation, "/" + part + "/transform/" + path); };
+  const auto number = [&](const std::string& path) {
+    return BenchRun::number(evaluation, "/" + part + "/transform/" + path);
+  };
   Similarity S;
   S.scale = number("scale");
   S.T_a_b.q = Eigen::Quaterniond(number("quaternion_xyzw/3"), number("quaternion_xyzw/0"), number("quaternion_xyzw/1"),
@@ -35,7 +37,9 @@ TrajectoryErrors relativeErrorsOf(const nlohmann::ordered_json& evaluation) {
   TrajectoryErrors errors;
   for (std::size_t k = 0; k < 64; ++k) {
     const std::string at = "/trajectory/relative/" + std::to_string(k);
-    const auto number = [&](const std::string& name) { return BenchRun::number(evaluation, at + "/translation_m/" + name); };
+    const auto number = [&](const std::string& name) {
+      return BenchRun::number(evaluation, at + "/translation_m/" + name);
+    };
     RelativeErrors r;
     r.distance_m = BenchRun::number(evaluation, at + "/distance_m");
     if (!(r.distance_m > 0)) break;
@@ -97,7 +101,8 @@ class RecordingPictures {
   void relativeErrors() {
     NamedErrors errors;
     for (const JobRun* run : runs_)
-      if (!run->second.evaluation.is_null()) errors.emplace_back(nameOf(*run), relativeErrorsOf(run->second.evaluation));
+      if (!run->second.evaluation.is_null())
+        errors.emplace_back(nameOf(*run), relativeErrorsOf(run->second.evaluation));
     if (!errors.empty())
       page_.figure(relativeErrorBoxes(errors), "Relative translation errors: median, middle half, from 5 % to 95 %");
   }
@@ -124,9 +129,9 @@ class RecordingPictures {
 };
 
 void overview(const BenchSuite& suite, const BenchResults& results, HtmlPage& page) {
-  page.paragraph(std::to_string(suite.recordings.size()) + " recordings, " + std::to_string(suite.configurations.size()) +
-                 " configurations, " + std::to_string(results.runs().size()) + " runs. Made by lintel-bench " +
-                 LINTEL_VERSION + ".");
+  page.paragraph(std::to_string(suite.recordings.size()) + " recordings, " +
+                 std::to_string(suite.configurations.size()) + " configurations, " +
+                 std::to_string(results.runs().size()) + " runs. Made by lintel-bench " + LINTEL_VERSION + ".");
   std::vector<std::string> items;
   for (const BenchConfiguration& configuration : suite.configurations) {
     std::string text = configuration.name + ":";
@@ -137,7 +142,8 @@ void overview(const BenchSuite& suite, const BenchResults& results, HtmlPage& pa
   page.list(items);
   std::vector<std::string> warnings;
   if (results.missing() > 0)
-    warnings.push_back(std::to_string(results.missing()) + " runs are still missing: start lintel-bench again to go on.");
+    warnings.push_back(std::to_string(results.missing()) +
+                       " runs are still missing: start lintel-bench again to go on.");
   for (const BenchRecording& recording : suite.recordings)
     if (recording.absent())
       warnings.push_back(recording.name + " was not found: name the folder that holds it with --recordings.");

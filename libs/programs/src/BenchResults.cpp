@@ -69,7 +69,8 @@ bool BenchCell::complete() const {
 double BenchCell::median(Json BenchRun::*part, const std::string& path) const {
   std::vector<double> values;
   for (const BenchRun& run : runs_)
-    if (const double value = BenchRun::number(run.*part, path); run.ok() && std::isfinite(value)) values.push_back(value);
+    if (const double value = BenchRun::number(run.*part, path); run.ok() && std::isfinite(value))
+      values.push_back(value);
   if (values.empty()) return std::numeric_limits<double>::quiet_NaN();
   std::sort(values.begin(), values.end());
   return 0.5 * (values[(values.size() - 1) / 2] + values[values.size() / 2]);

@@ -14,7 +14,7 @@ namespace lintel {
 /// What one job has left.
 struct BenchRun {
   bool found = false;
-  std::string fault;          ///< why there is no result; empty: there is one
+  std::string fault;                                             ///< why there is no result; empty: there is one
   nlohmann::ordered_json evaluation, evaluation_refined, stats;  ///< null where a file is missing
 
   bool ok() const { return found && fault.empty(); }

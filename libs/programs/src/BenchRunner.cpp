@@ -63,7 +63,8 @@ std::string lastLine(const std::string& text) {
   const std::size_t end = text.find_last_not_of("\n ");
   if (end == std::string::npos) return "";
   const std::size_t begin = text.rfind('\n', end);
-  return text.substr(begin == std::string::npos ? 0 : begin + 1, end - (begin == std::string::npos ? 0 : begin + 1) + 1);
+  return text.substr(begin == std::string::npos ? 0 : begin + 1,
+                     end - (begin == std::string::npos ? 0 : begin + 1) + 1);
 }
 
 Json readJson(const fs::path& path) {
@@ -107,11 +108,13 @@ std::string BenchRunner::runProgram(const std::vector<std::string>& words, const
   std::ofstream(log, std::ios::app) << "$ " << shellLine(command) << "\n" << result.output << result.errors;
   if (result.exit_code == 0) return "";
   const int signal = result.exit_code - 128;
-  if (result.exit_code == 127) throw std::runtime_error(command[0] + ": cannot be started; it belongs beside lintel-bench");
+  if (result.exit_code == 127)
+    throw std::runtime_error(command[0] + ": cannot be started; it belongs beside lintel-bench");
   if (signal == SIGINT || signal == SIGTERM || signal == SIGHUP)  // somebody stops the work: no result
     throw std::runtime_error(words[0] + " was stopped; start lintel-bench again to go on");
   const std::string reason = lastLine(result.errors);
-  if (signal > 0) return words[0] + ": ended by signal " + std::to_string(signal) + (signal == SIGKILL ? " (out of memory?)" : "");
+  if (signal > 0)
+    return words[0] + ": ended by signal " + std::to_string(signal) + (signal == SIGKILL ? " (out of memory?)" : "");
   return reason.empty() ? words[0] + ": exit code " + std::to_string(result.exit_code) : reason;
 }
 
@@ -119,15 +122,16 @@ std::string BenchRunner::makeRecording(const BenchJob& job) const {
   if (job.simulation.empty() || fs::exists(job.recording_path)) return "";
   const FolderLock lock(job.recording_path + ".lock");
   if (fs::exists(job.recording_path)) return "";
-  std::vector<std::string> words{"lintel-sim", "-o", job.recording_path, "-q", "--threads", std::to_string(vio_threads_)};
+  std::vector<std::string> words{"lintel-sim", "-o",        job.recording_path,
+                                 "-q",         "--threads", std::to_string(vio_threads_)};
   words.insert(words.end(), job.simulation.begin(), job.simulation.end());
   return runProgram(words, job.recording_path + ".log");
 }
 
 std::string BenchRunner::odometry(const BenchJob& job, const fs::path& part) const {
   const BenchConfiguration& configuration = suite_.configurations[job.configuration];
-  std::vector<std::string> words{"lintel-vio", job.recording_path, "-o", part.string(), "-w", "-q", "--export", "none",
-                                 "--threads", std::to_string(vio_threads_)};
+  std::vector<std::string> words{"lintel-vio", job.recording_path, "-o",   part.string(), "-w",
+                                 "-q",         "--export",         "none", "--threads",   std::to_string(vio_threads_)};
   if (!configuration.config.empty()) words.insert(words.end(), {"-c", configuration.config});
   for (const std::string& setting : configuration.settings) words.insert(words.end(), {"--set", setting});
   if (job.from_s > 0) words.insert(words.end(), {"--from", shortest(job.from_s)});
@@ -138,8 +142,10 @@ std::string BenchRunner::odometry(const BenchJob& job, const fs::path& part) con
 std::string BenchRunner::evaluateTrajectory(const BenchJob& job, const fs::path& part, const std::string& trajectory,
                                             const std::string& json, bool with_map) const {
   const std::string& own_truth = suite_.recordings[job.recording].groundtruth;
-  std::vector<std::string> words{"lintel-eval", "--quiet", "--trajectory", (part / trajectory).string(), "--json",
-                                 (part / json).string(), "--groundtruth", own_truth.empty() ? job.recording_path : own_truth};
+  std::vector<std::string> words{"lintel-eval",   "--quiet",
+                                 "--trajectory",  (part / trajectory).string(),
+                                 "--json",        (part / json).string(),
+                                 "--groundtruth", own_truth.empty() ? job.recording_path : own_truth};
   const Json stats = readJson(part / "stats.json");
   if (stats.is_object() && stats.contains("first_frame_ns"))
     words.insert(words.end(), {"--between", seconds(stats["first_frame_ns"].get<std::int64_t>()) + "," +
@@ -154,7 +160,8 @@ std::string BenchRunner::evaluateTrajectory(const BenchJob& job, const fs::path&
 std::string BenchRunner::evaluate(const BenchJob& job, const fs::path& part) const {
   const std::string& own_truth = suite_.recordings[job.recording].groundtruth;
   try {
-    if (!keepTruth(own_truth.empty() ? job.recording_path : own_truth, own_truth.empty(), part / "truth.tum")) return "";
+    if (!keepTruth(own_truth.empty() ? job.recording_path : own_truth, own_truth.empty(), part / "truth.tum"))
+      return "";
   } catch (const std::exception& error) {
     return error.what();
   }

@@ -18,9 +18,9 @@ struct JobOutcome {
 /// Whether a job's result is there and is what the suite asks for today. With `retry_failed` a failure is no result.
 bool isDone(const BenchJob& job, bool retry_failed = false);
 
-/// Runs jobs: lintel-sim where the recording has to be made, lintel-vio, lintel-eval, each a process of its own, so that
-/// a crash ends one run only. What a job leaves appears at once when all of it is there. Jobs of one suite may run at
-/// the same time, on machines that share the folder.
+/// Runs jobs: lintel-sim where the recording has to be made, lintel-vio, lintel-eval, each a process of its own, so
+/// that a crash ends one run only. What a job leaves appears at once when all of it is there. Jobs of one suite may run
+/// at the same time, on machines that share the folder.
 class BenchRunner {
  public:
   /// `programs`: folder of the other programs. `vio_threads`: of each lintel-vio and lintel-sim.

@@ -52,7 +52,8 @@ class SuiteReader {
   }
 
   BenchSuite read() {
-    checkKeys(root_, {"name", "title", "config", "recordings", "configurations", "starts_s", "seeds", "published", "notes"});
+    checkKeys(root_,
+              {"name", "title", "config", "recordings", "configurations", "starts_s", "seeds", "published", "notes"});
     BenchSuite suite;
     suite.name = fs::path(file_).stem().string();
     if (root_["name"]) suite.name = nameOf(root_["name"]);
@@ -118,7 +119,9 @@ class SuiteReader {
     return fs::absolute(path).lexically_normal().string();
   }
 
-  std::string inFolder(const std::string& path) const { return fs::absolute(fs::path(folder_) / path).lexically_normal().string(); }
+  std::string inFolder(const std::string& path) const {
+    return fs::absolute(fs::path(folder_) / path).lexically_normal().string();
+  }
 
   void add(const YAML::Node& node, BenchRecording recording, BenchSuite& suite) const {
     for (const BenchRecording& other : suite.recordings)

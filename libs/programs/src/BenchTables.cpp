@@ -78,7 +78,9 @@ Table accuracyTable(const BenchSuite& suite, const BenchResults& results, bool r
     markBest(row, suite, results, r, rmse);
     for (const auto& [system, figures] : suite.published) {
       const auto found = figures.find(suite.recordings[r].name);
-      row.push_back(found == figures.end() ? Cell("-") : Cell(fixedText(found->second.rmse_m, 3) + "/" + fixedText(found->second.max_m, 3)));
+      row.push_back(found == figures.end()
+                        ? Cell("-")
+                        : Cell(fixedText(found->second.rmse_m, 3) + "/" + fixedText(found->second.max_m, 3)));
     }
     table.rows.push_back(row);
   }
@@ -97,7 +99,8 @@ Table accuracyTable(const BenchSuite& suite, const BenchResults& results, bool r
   for (const auto& system : suite.published) {
     double sum = 0;
     for (const auto& figure_of : system.second) sum += figure_of.second.rmse_m;
-    mean.push_back(fixedText(sum / static_cast<double>(system.second.size()), 3) + " of " + std::to_string(system.second.size()));
+    mean.push_back(fixedText(sum / static_cast<double>(system.second.size()), 3) + " of " +
+                   std::to_string(system.second.size()));
   }
   table.rows.push_back(mean);
   return table;
@@ -149,8 +152,9 @@ nlohmann::ordered_json figuresOf(const BenchRun& run) {
   json["evaluation"] = run.evaluation;
   if (!run.evaluation_refined.is_null()) json["evaluation_refined"] = run.evaluation_refined;
   for (const char* key : {"frames", "frames_with_pose", "keyframes", "first_pose_s", "resets", "reset_reasons",
-                          "mean_points_used", "mean_lines_tracked", "mean_lines_placed", "mean_lines_used", "mean_lines_degenerate", "mean_lines_degenerate_by_reason", "degenerate_share", "mean_lines_constrained",
-                          "map_points", "map_lines", "tracking", "warnings"})
+                          "mean_points_used", "mean_lines_tracked", "mean_lines_placed", "mean_lines_used",
+                          "mean_lines_degenerate", "mean_lines_degenerate_by_reason", "degenerate_share",
+                          "mean_lines_constrained", "map_points", "map_lines", "tracking", "warnings"})
     if (run.stats.contains(key)) json["stats"][key] = run.stats[key];
   return json;
 }

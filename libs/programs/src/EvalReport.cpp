@@ -36,8 +36,8 @@ void trajectorySection(const Evaluation& e, HtmlPage& page) {
   for (const RelativeErrors& r : errors.relative)
     relative.rows.push_back({fixedText(r.distance_m, 1) + (r.whole_path ? " m (all)" : " m"),
                              std::to_string(r.translation_m.count), fixedText(r.translation_m.rmse, 4),
-                             fixedText(100 * r.translation_m.rmse / r.distance_m, 2), fixedText(r.translation_m.median, 4),
-                             fixedText(kDegrees * r.rotation_rad.rmse, 3)});
+                             fixedText(100 * r.translation_m.rmse / r.distance_m, 2),
+                             fixedText(r.translation_m.median, 4), fixedText(kDegrees * r.rotation_rad.rmse, 3)});
   page.table(relative);
   page.figure(relativeErrorBoxes({{"estimate", errors}}),
               "Relative translation errors: median, middle half, and from 5 % to 95 %");

@@ -81,7 +81,8 @@ class LintelBench {
     suite_ = readSuite(suite_file_, recordings_);
     warnOfAbsent();
     jobs_ = jobsOf(suite_, out_folder_);
-    if (jobs_.empty()) throw SuiteError(suite_file_ + ": none of its recordings was found; name their folder with --recordings");
+    if (jobs_.empty())
+      throw SuiteError(suite_file_ + ": none of its recordings was found; name their folder with --recordings");
     if (print_jobs_) return printJobs();
     if (!job_.empty()) return runOne();
     if (!collect_) runMissing();
@@ -91,8 +92,12 @@ class LintelBench {
  private:
   void addOptions() {
     app_.footer(examples());
-    app_.add_option("suite", suite_file_, "What to run: recordings and configurations")->type_name("SUITE.yaml")->required();
-    app_.add_option("-o,--output", output_, "Folder of results; what is there is not run again")->type_name("OUT")->required();
+    app_.add_option("suite", suite_file_, "What to run: recordings and configurations")
+        ->type_name("SUITE.yaml")
+        ->required();
+    app_.add_option("-o,--output", output_, "Folder of results; what is there is not run again")
+        ->type_name("OUT")
+        ->required();
     app_.add_option("--recordings", recordings_, "Folder in which recordings are looked for by name")
         ->type_name("DIR")
         ->capture_default_str();
@@ -110,7 +115,8 @@ class LintelBench {
   }
 
   void checkUsage() {
-    if (print_jobs_ + collect_ + !job_.empty() > 1) throw UsageError("--print-jobs, --collect and --job exclude each other");
+    if (print_jobs_ + collect_ + !job_.empty() > 1)
+      throw UsageError("--print-jobs, --collect and --job exclude each other");
     std::error_code error;
     const fs::path self = fs::read_symlink("/proc/self/exe", error);
     if (programs_.empty()) programs_ = self.parent_path().string();
@@ -121,13 +127,18 @@ class LintelBench {
     if (quiet_ || print_jobs_ || !job_.empty()) return;
     for (const BenchRecording& recording : suite_.recordings)
       if (recording.absent())
-        err_ << kName << ": warning: recording " << recording.name << " was not found; name the folder that holds it with --recordings\n";
+        err_ << kName << ": warning: recording " << recording.name
+             << " was not found; name the folder that holds it with --recordings\n";
   }
 
   int printJobs() const {
-    std::vector<std::string> words{(fs::path(programs_) / kName).string(), fs::absolute(suite_file_).lexically_normal().string(),
-                                   "-o", out_folder_.string(), "--recordings",
-                                   fs::absolute(recordings_).lexically_normal().string(), "--quiet"};
+    std::vector<std::string> words{(fs::path(programs_) / kName).string(),
+                                   fs::absolute(suite_file_).lexically_normal().string(),
+                                   "-o",
+                                   out_folder_.string(),
+                                   "--recordings",
+                                   fs::absolute(recordings_).lexically_normal().string(),
+                                   "--quiet"};
     if (vio_threads_ != 1) words.insert(words.end(), {"--threads", std::to_string(vio_threads_)});
     if (retry_failed_) words.emplace_back("--retry-failed");
     for (const BenchJob& job : jobs_) {
@@ -164,8 +175,8 @@ class LintelBench {
       ++done;
       if (!quiet_) {
         progress.clear();
-        err_ << done << "/" << jobs_.size() << " " << job.id << ": " << (outcome.failed ? "FAILED: " : "") << outcome.text
-             << " (" << durationText(wall_s) << ")\n";
+        err_ << done << "/" << jobs_.size() << " " << job.id << ": " << (outcome.failed ? "FAILED: " : "")
+             << outcome.text << " (" << durationText(wall_s) << ")\n";
       }
       progress.update(done);
     });
@@ -184,7 +195,8 @@ class LintelBench {
     }
     AtomicFile::writeWhole((out_folder_ / "results.json").string(), benchJson(suite_, results).dump(2) + "\n");
     AtomicFile::writeWhole((out_folder_ / "report.html").string(), benchPage(suite_, results));
-    if (!quiet_) out_ << "written: " << (out_folder_ / "report.html").string() << ", results.json, tables/*.txt, tables/*.csv\n";
+    if (!quiet_)
+      out_ << "written: " << (out_folder_ / "report.html").string() << ", results.json, tables/*.txt, tables/*.csv\n";
     std::size_t failed = 0;
     for (const auto& [job, run] : results.runs()) failed += run.found && !run.fault.empty();
     if (failed > 0)

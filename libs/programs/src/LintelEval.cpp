@@ -74,10 +74,11 @@ class LintelEval {
  private:
   void addOptions() {
     app_.add_option("--trajectory", trajectory_, "Estimated trajectory, TUM or EuRoC state CSV")->type_name("EST");
-    app_.add_option("--groundtruth", groundtruth_,
-                    "True trajectory: TUM, EuRoC state CSV, or a recording that carries it (EuRoC folder, rawlog); for a "
-                    "map the default is the one beside the lines "
-                    "(../state_groundtruth_estimate0/data.csv)")
+    app_.add_option(
+            "--groundtruth", groundtruth_,
+            "True trajectory: TUM, EuRoC state CSV, or a recording that carries it (EuRoC folder, rawlog); for a "
+            "map the default is the one beside the lines "
+            "(../state_groundtruth_estimate0/data.csv)")
         ->type_name("GT");
     app_.add_option("--map", map_, "Line map of lintel-vio")->type_name("MAP.lintel");
     app_.add_option("--lines", lines_, "True lines, as in mav0/lines0/data.csv")->type_name("GT.csv");
@@ -156,7 +157,9 @@ class LintelEval {
     SurfaceDistanceFunction surface_distance;
     const std::string mesh = surfaces_.empty() ? besideLines("scene0/scene.ply") : surfaces_;
     if (!mesh.empty())
-      surface_distance = [surface = std::make_shared<SurfaceDistance>(mesh)](const Eigen::Vector3d& p) { return (*surface)(p); };
+      surface_distance = [surface = std::make_shared<SurfaceDistance>(mesh)](const Eigen::Vector3d& p) {
+        return (*surface)(p);
+      };
     evaluation_.lines =
         evaluateLines(evaluation_.map.lines, evaluation_.S_truth_map, evaluation_.true_lines, {}, surface_distance);
     if (!quiet_) printMap();

@@ -62,13 +62,15 @@ class LintelVio {
     costs_.once_ms.emplace_back("start of the program", processTimeMs());
     const auto start = std::chrono::steady_clock::now();
     const OdometryResult result = process(*recording, configuration);
-    const double wall_s = costs_.wall_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+    const double wall_s = costs_.wall_s =
+        std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
     if (result.statistics.frames == 0 && !result.error.empty()) throw RecordingError(result.error);
     const std::vector<std::string> warnings = recording->warnings();
     for (const std::string& warning : warnings) err_ << kName << ": warning: " << warning << "\n";
     writeOutput(result, configuration, warnings);
     if (!quiet_) summarise(result, wall_s);
-    if (!result.error.empty()) throw RecordingError(result.error + " (what was computed until then is in " + output_ + ")");
+    if (!result.error.empty())
+      throw RecordingError(result.error + " (what was computed until then is in " + output_ + ")");
     if (result.trajectory.empty()) throw std::runtime_error(noPose(result));
     return 0;
   }
@@ -78,7 +80,8 @@ class LintelVio {
     app_.footer(examples());
     app_.add_option("input", input_, "A rawlog or an EuRoC folder (mav0 or its parent)")->type_name("INPUT");
     app_.add_option("-o,--output", output_, "Folder to write to; made if it does not exist")->type_name("OUT");
-    app_.add_option("-c,--config", config_, "Configuration; what it leaves out keeps its default")->type_name("CONFIG.yaml");
+    app_.add_option("-c,--config", config_, "Configuration; what it leaves out keeps its default")
+        ->type_name("CONFIG.yaml");
     app_.add_option("--set", settings_, "Set one option, e.g. --set estimator.keyframes=8")
         ->type_name("KEY=VALUE")
         ->take_all()
@@ -94,7 +97,8 @@ class LintelVio {
         ->delimiter(',')
         ->allow_extra_args(false)
         ->type_name("EXT,...");
-    app_.add_option("--draw-tracks", draw_tracks_, "Write every frame with its points and lines as a PNG to this folder")
+    app_.add_option("--draw-tracks", draw_tracks_,
+                    "Write every frame with its points and lines as a PNG to this folder")
         ->type_name("DIR");
     app_.add_flag("--no-refine", no_refine_, "Leave out the batch adjustment after the last frame");
     app_.add_flag("-w,--overwrite", overwrite_, "Write into OUT although it holds the results of an earlier run");
@@ -136,22 +140,23 @@ class LintelVio {
     std::optional<Progress> refining;
     calibration_ = recording.rig();
     const Rig& rig = calibration_;
-    return runOdometry(recording, configuration, threads_,
-                       [&](const Frame& frame, const FrameTracks& tracks, const WindowUpdate& update, std::size_t done) {
-                         progress.update(done);
-                         series_.add(tracks, update);
-                         if (draw_tracks_.empty()) return;
-                         char name[32];
-                         std::snprintf(name, sizeof name, "%06zu.png", done - 1);
-                         drawTracks((fs::path(draw_tracks_) / name).string(), frame, rig, tracks);
-                       },
-                       [&](double done) {
-                         if (!refining) {
-                           progress.clear();
-                           refining.emplace(err_, progressStyleFor(err_, quiet_), "refining", "%", 100);
-                         }
-                         refining->update(static_cast<std::size_t>(100 * done));
-                       });
+    return runOdometry(
+        recording, configuration, threads_,
+        [&](const Frame& frame, const FrameTracks& tracks, const WindowUpdate& update, std::size_t done) {
+          progress.update(done);
+          series_.add(tracks, update);
+          if (draw_tracks_.empty()) return;
+          char name[32];
+          std::snprintf(name, sizeof name, "%06zu.png", done - 1);
+          drawTracks((fs::path(draw_tracks_) / name).string(), frame, rig, tracks);
+        },
+        [&](double done) {
+          if (!refining) {
+            progress.clear();
+            refining.emplace(err_, progressStyleFor(err_, quiet_), "refining", "%", 100);
+          }
+          refining->update(static_cast<std::size_t>(100 * done));
+        });
   }
 
   void writeOutput(const OdometryResult& result, const Configuration& configuration,
@@ -215,11 +220,13 @@ class LintelVio {
     out_ << "map: " << result.map.lines.size() << " lines, " << result.map.points.size() << " points, "
          << result.map.keyframes.size() << " keyframes\n";
     if (result.lines_beside > 0)
-      out_ << "     " << result.lines_beside << " more lines run beside better seen ones and were left out (map.spacing.min_m, 0 keeps them)\n";
+      out_ << "     " << result.lines_beside
+           << " more lines run beside better seen ones and were left out (map.spacing.min_m, 0 keeps them)\n";
     if (!result.refinement.verdict.empty()) out_ << result.refinement.verdict << "\n";
     const fs::path folder(output_);
     out_ << "written: " << (folder / "trajectory.tum").string()
-         << (result.refinement.accepted ? ", trajectory_refined.tum" : "") << ", map.lintel, stats.json, config.yaml, report.html\n";
+         << (result.refinement.accepted ? ", trajectory_refined.tum" : "")
+         << ", map.lintel, stats.json, config.yaml, report.html\n";
     for (const std::string& file : exported_) {
       std::string hint = viewerHint(fs::path(file).extension().string().substr(1));
       if (const std::size_t place = hint.find("FILE"); place != std::string::npos) hint.replace(place, 4, file);

@@ -24,9 +24,13 @@ struct TrackedFrame {
 class BackEnd {
  public:
   BackEnd(const Rig& rig, const Configuration& configuration, const OdometryObserver& observer, OdometryResult& result)
-      : rig_(rig), configuration_(configuration), estimator_(rig, configuration.estimator),
+      : rig_(rig),
+        configuration_(configuration),
+        estimator_(rig, configuration.estimator),
         map_(rig, configuration.map),
-        refinement_(rig, configuration.estimator, configuration.map, configuration.refinement), observer_(observer), result_(result) {}
+        refinement_(rig, configuration.estimator, configuration.map, configuration.refinement),
+        observer_(observer),
+        result_(result) {}
 
   void process(const TrackedFrame& frame) {
     OdometryStatistics& s = result_.statistics;
@@ -59,9 +63,9 @@ class BackEnd {
     s.keyframes = result_.map.keyframes.size();
     if (s.window_frames == 0) return;
     const auto n = static_cast<double>(s.window_frames);
-    for (double* mean : {&s.mean_points_used, &s.mean_lines_tracked, &s.mean_lines_placed, &s.mean_lines_used, &s.mean_lines_degenerate,
-                         &s.mean_lines_constrained, &s.mean_lines_through_epipole, &s.mean_lines_direction_unknown,
-                         &s.mean_lines_distance_unknown})
+    for (double* mean : {&s.mean_points_used, &s.mean_lines_tracked, &s.mean_lines_placed, &s.mean_lines_used,
+                         &s.mean_lines_degenerate, &s.mean_lines_constrained, &s.mean_lines_through_epipole,
+                         &s.mean_lines_direction_unknown, &s.mean_lines_distance_unknown})
       *mean /= n;
   }
 

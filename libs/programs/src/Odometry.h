@@ -26,11 +26,12 @@ struct OdometryStatistics {
   std::size_t frames = 0, frames_with_pose = 0, window_frames = 0, keyframes = 0, resets = 0;
   std::int64_t first_frame_ns = 0, last_frame_ns = 0;
   double first_pose_s = -1;  ///< after the first frame
-  double mean_points_used = 0, mean_lines_tracked = 0, mean_lines_placed = 0, mean_lines_used = 0, mean_lines_degenerate = 0, mean_lines_constrained = 0;
+  double mean_points_used = 0, mean_lines_tracked = 0, mean_lines_placed = 0, mean_lines_used = 0,
+         mean_lines_degenerate = 0, mean_lines_constrained = 0;
   /// degenerate lines by their reason (LineVerdict)
   double mean_lines_through_epipole = 0, mean_lines_direction_unknown = 0, mean_lines_distance_unknown = 0;
-  std::vector<std::string> failures;  ///< time and reason of each reset
-  std::string last_wait;              ///< what initialisation waited for last
+  std::vector<std::string> failures;                   ///< time and reason of each reset
+  std::string last_wait;                               ///< what initialisation waited for last
   StageClock decoding, tracking, estimation, mapping;  ///< a value a frame
   StageClock map_fitting, refinement;                  ///< once, after the last frame
   FrontEndStatistics front_end;
@@ -41,8 +42,8 @@ struct OdometryResult {
   std::vector<OdometryPose> refined_trajectory;  ///< empty when there was no refinement or it was not accepted
   RefinementReport refinement;
   LineMap map;
-  int lines_beside = 0;  ///< known, but beside better seen ones: see map.spacing
-  Rig rig;  ///< as refined
+  int lines_beside = 0;                    ///< known, but beside better seen ones: see map.spacing
+  Rig rig;                                 ///< as refined
   CalibrationEstimate window_calibration;  ///< as the last window had it, before any batch refinement
   double time_offset_s = 0;
   OdometryStatistics statistics;

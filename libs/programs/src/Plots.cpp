@@ -11,7 +11,7 @@ namespace {
 
 constexpr double kNothing = std::numeric_limits<double>::quiet_NaN();
 constexpr const char* kTruthColour = "#9a9a9a";
-constexpr std::size_t kMostPoints = 1000;  // of a curve through poses: a figure has fewer pixels
+constexpr std::size_t kMostPoints = 1000;     // of a curve through poses: a figure has fewer pixels
 constexpr std::int64_t kGap_ns = 1000000000;  // a line is interrupted where poses are farther apart
 
 double secondsBetween(std::int64_t from_ns, std::int64_t to_ns) { return 1e-9 * static_cast<double>(to_ns - from_ns); }
@@ -61,8 +61,9 @@ Figure topView(const std::vector<NamedTrajectory>& trajectories) {
 Figure heightOverTime(const std::vector<NamedTrajectory>& trajectories, std::int64_t t0_ns) {
   Figure figure{"", "time [s]", "height [m]"};
   for (const NamedTrajectory& t : trajectories)
-    figure.curves.push_back(
-        curveThrough(t, [&](const auto& s) { return PlotPoint{secondsBetween(t0_ns, s.first), s.second.p.z()}; }));
+    figure.curves.push_back(curveThrough(t, [&](const auto& s) {
+      return PlotPoint{secondsBetween(t0_ns, s.first), s.second.p.z()};
+    }));
   figure.height_px = 260;
   return figure;
 }
@@ -103,9 +104,10 @@ Figure relativeErrorBoxes(const NamedErrors& errors) {
       const auto place = std::lower_bound(lengths_m.begin(), lengths_m.end(), r.distance_m) - lengths_m.begin();
       const ErrorStatistics& s = r.translation_m;
       const double percent = 100 / r.distance_m;
-      series.boxes.push_back({static_cast<double>(place) + width * (static_cast<double>(k) + 0.5) - 0.4,
-                              0.8 * width,
-                              {percent * s.p05, percent * s.p25, percent * s.median, percent * s.p75, percent * s.p95}});
+      series.boxes.push_back(
+          {static_cast<double>(place) + width * (static_cast<double>(k) + 0.5) - 0.4,
+           0.8 * width,
+           {percent * s.p05, percent * s.p25, percent * s.median, percent * s.p75, percent * s.p95}});
     }
     figure.boxes.push_back(series);
   }
@@ -127,8 +129,9 @@ Figure mapFromAbove(const LineMap& map, const Similarity& S_a_map, const std::ve
   }
   figure.curves = {edges, well, degenerate, constrained};
   if (!trajectory.empty()) {
-    figure.curves.push_back(
-        curveThrough({"flight", trajectory, "#000000"}, [](const auto& s) { return PlotPoint{s.second.p.x(), s.second.p.y()}; }));
+    figure.curves.push_back(curveThrough({"flight", trajectory, "#000000"}, [](const auto& s) {
+      return PlotPoint{s.second.p.x(), s.second.p.y()};
+    }));
     figure.curves.back().width = 0.8;
   }
   figure.equal_axes = true;

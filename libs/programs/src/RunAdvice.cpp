@@ -48,7 +48,8 @@ class Adviser {
           "rotation and that IMU and images carry times of one clock.");
     } else if (s_.first_pose_s > kLateStart_s) {
       say("The first pose came after " + fixedText(s_.first_pose_s, 1) +
-          " s: what lies before has none. Moving sideways for a second right at the start, or resting there, makes it earlier.");
+          " s: what lies before has none. Moving sideways for a second right at the start, or resting there, makes it "
+          "earlier.");
     }
   }
 
@@ -73,7 +74,8 @@ class Adviser {
     const double share = static_cast<double>(few) / static_cast<double>(in_window);
     if (share > kFewPointsShare)
       say("In " + fixedText(100 * share, 0) + " % of the frames fewer than " + std::to_string(kFewPoints) +
-          " points carried the estimate. More light, a shorter exposure or a lower tracking.points.min_quality give more; "
+          " points carried the estimate. More light, a shorter exposure or a lower tracking.points.min_quality give "
+          "more; "
           "lines help where texture is missing.");
     if (rest == in_window) say("The camera rested all the time: there is no motion to map from.");
   }
@@ -83,7 +85,8 @@ class Adviser {
     const double share = s_.mean_lines_degenerate / s_.mean_lines_placed;
     if (share > kDegenerateShare)
       say(fixedText(100 * share, 0) +
-          " % of the lines in the window were degenerate: the camera moves along them, so their own views leave direction or depth "
+          " % of the lines in the window were degenerate: the camera moves along them, so their own views leave "
+          "direction or depth "
           "open. They are kept with that uncertainty; sideways motion settles it.");
     if (result_.map.lines.empty())
       say("The map holds no lines although lines were tracked: no line was seen from places far enough apart. Move "
@@ -96,7 +99,8 @@ class Adviser {
     const double focal = after.meanFocal() / before.meanFocal() - 1;
     if (std::abs(focal) > kFocalChange)
       say("The focal length was refined by " + fixedText(100 * focal, 2) +
-          " %: the calibration does not fit this camera. Calibrate it again, with the lens as it was in this recording.");
+          " %: the calibration does not fit this camera. Calibrate it again, with the lens as it was in this "
+          "recording.");
     const Pose difference = calibration_.T_b_c.inverse() * result_.rig.T_b_c;
     const double turned = logRotation(difference.q).norm();
     if (turned > kTurned_rad)

@@ -61,9 +61,13 @@ std::string nameOf(const std::string& input) {
 class Report {
  public:
   Report(const RunRecord& record, const OdometryResult& result, const RunSeries& series)
-      : record_(record), result_(result), frames_(series.frames()), series_(series),
+      : record_(record),
+        result_(result),
+        frames_(series.frames()),
+        series_(series),
         page_("Run on " + nameOf(record.input)),
-        poses_(stampedPoses(result.trajectory)), refined_(stampedPoses(result.refined_trajectory)) {
+        poses_(stampedPoses(result.trajectory)),
+        refined_(stampedPoses(result.refined_trajectory)) {
     if (!frames_.empty()) t0_ns_ = frames_.front().t_ns;
     if (poses_.empty() || record.groundtruth.empty()) return;
     TrajectoryErrorParams params;
@@ -111,14 +115,16 @@ class Report {
     for (std::size_t i = 1; i < poses_.size(); ++i) path_m += (poses_[i].second.p - poses_[i - 1].second.p).norm();
     Table table{"summary", "", {"", ""}, {}, {}};
     table.rows.push_back({"recording", std::to_string(s.frames) + " frames, " + fixedText(duration_s, 1) + " s"});
-    table.rows.push_back({"poses", std::to_string(s.frames_with_pose) + " of " + std::to_string(s.frames) +
-                                       (s.first_pose_s >= 0 ? ", first after " + fixedText(s.first_pose_s, 1) + " s" : "")});
+    table.rows.push_back(
+        {"poses", std::to_string(s.frames_with_pose) + " of " + std::to_string(s.frames) +
+                      (s.first_pose_s >= 0 ? ", first after " + fixedText(s.first_pose_s, 1) + " s" : "")});
     table.rows.push_back({"travelled", fixedText(path_m, 1) + " m"});
     if (errors_)
       table.rows.push_back({"position error (RMSE)", fixedText(errors_->position_m.rmse, 4) + " m, at most " +
                                                          fixedText(errors_->position_m.max, 4) + " m"});
-    const std::string beside =
-        result_.lines_beside > 0 ? " (" + std::to_string(result_.lines_beside) + " more run beside better seen ones)" : "";
+    const std::string beside = result_.lines_beside > 0
+                                   ? " (" + std::to_string(result_.lines_beside) + " more run beside better seen ones)"
+                                   : "";
     table.rows.push_back({"map", std::to_string(result_.map.lines.size()) + " lines" + beside + ", " +
                                      std::to_string(result_.map.points.size()) + " points, " +
                                      std::to_string(result_.map.keyframes.size()) + " keyframes"});
@@ -151,8 +157,7 @@ class Report {
     page_.figure(topView(drawn), errors_ ? "From above, laid onto the ground truth" : "From above");
     page_.figure(heightOverTime(drawn, t0_ns_), "Height over time");
     if (errors_) page_.figure(errorOverTime(errors), "Position error over time");
-    if (errors_)
-      page_.figure(relativeErrorBoxes(errors), "Relative errors: median, middle half, from 5 % to 95 %");
+    if (errors_) page_.figure(relativeErrorBoxes(errors), "Relative errors: median, middle half, from 5 % to 95 %");
     page_.figure(speed(), "Speed over time");
     page_.endGallery();
     if (errors_) errorTable();
@@ -217,11 +222,12 @@ class Report {
                      over("well determined lines", true, [](const RunFrame& f) { return double(f.lines_used); }),
                      over("degenerate lines", true, [](const RunFrame& f) { return double(f.lines_degenerate); })};
     Figure degenerate{"", "time [s]", "degenerate lines"};
-    degenerate.curves = {over("all", true, [](const RunFrame& f) { return double(f.lines_degenerate); }),
-                         over("direction unknown", true, [](const RunFrame& f) { return double(f.lines_direction_unknown); }),
-                         over("distance unknown", true, [](const RunFrame& f) { return double(f.lines_distance_unknown); }),
-                         over("through the epipole", true, [](const RunFrame& f) { return double(f.lines_through_epipole); }),
-                         over("constrained", true, [](const RunFrame& f) { return double(f.lines_constrained); })};
+    degenerate.curves = {
+        over("all", true, [](const RunFrame& f) { return double(f.lines_degenerate); }),
+        over("direction unknown", true, [](const RunFrame& f) { return double(f.lines_direction_unknown); }),
+        over("distance unknown", true, [](const RunFrame& f) { return double(f.lines_distance_unknown); }),
+        over("through the epipole", true, [](const RunFrame& f) { return double(f.lines_through_epipole); }),
+        over("constrained", true, [](const RunFrame& f) { return double(f.lines_constrained); })};
     page_.beginGallery();
     for (Figure* figure : {&image, &window, &degenerate}) {
       figure->from_zero = true;
@@ -232,11 +238,14 @@ class Report {
     page_.figure(degenerate, "Degenerate lines by their reason, and those held by lines parallel to them");
     page_.endGallery();
     const FrontEndStatistics& f = result_.statistics.front_end;
-    page_.table({"tracks", "", {"", "points", "lines"},
-                 {{"median life [frames]", fixedText(f.points.lifetimes.median(), 0), fixedText(f.lines.lifetimes.median(), 0)},
-                  {"seen in 10 frames or more [%]", fixedText(100 * f.points.lifetimes.shareOfAtLeast(10), 1),
-                   fixedText(100 * f.lines.lifetimes.shareOfAtLeast(10), 1)}},
-                 {}});
+    page_.table(
+        {"tracks",
+         "",
+         {"", "points", "lines"},
+         {{"median life [frames]", fixedText(f.points.lifetimes.median(), 0), fixedText(f.lines.lifetimes.median(), 0)},
+          {"seen in 10 frames or more [%]", fixedText(100 * f.points.lifetimes.shareOfAtLeast(10), 1),
+           fixedText(100 * f.lines.lifetimes.shareOfAtLeast(10), 1)}},
+         {}});
   }
 
   /// A bias over time, with a band of one standard deviation to both sides.
@@ -260,8 +269,10 @@ class Report {
       const std::string name(1, "xyz"[axis]);
       const auto gyroOf = [axis](const ImuBias& bias) { return bias.gyro[axis]; };
       const auto accelOf = [axis](const ImuBias& bias) { return bias.accel[axis]; };
-      for (Curve& curve : biasCurves(name, plotColour(static_cast<std::size_t>(axis)), gyroOf)) gyro.curves.push_back(curve);
-      for (Curve& curve : biasCurves(name, plotColour(static_cast<std::size_t>(axis)), accelOf)) accel.curves.push_back(curve);
+      for (Curve& curve : biasCurves(name, plotColour(static_cast<std::size_t>(axis)), gyroOf))
+        gyro.curves.push_back(curve);
+      for (Curve& curve : biasCurves(name, plotColour(static_cast<std::size_t>(axis)), accelOf))
+        accel.curves.push_back(curve);
     }
     gyro.height_px = accel.height_px = 300;
     page_.beginGallery();
@@ -291,7 +302,8 @@ class Report {
       curve.points = thinned(curve.points);
       figure.curves.push_back(curve);
       const ErrorStatistics stats = statisticsOf(ms);
-      table.rows.push_back({name, fixedText(stats.mean, 2), fixedText(stats.median, 2), fixedText(stats.p95, 2), fixedText(stats.max, 2)});
+      table.rows.push_back({name, fixedText(stats.mean, 2), fixedText(stats.median, 2), fixedText(stats.p95, 2),
+                            fixedText(stats.max, 2)});
     }
     figure.from_zero = true;
     figure.height_px = 300;
@@ -305,7 +317,9 @@ class Report {
     const Rig& rig = record_.calibration;
     std::ostringstream noise;
     noise << rig.imu_noise.gyro_noise << ", " << rig.imu_noise.accel_noise;
-    page_.table({"input", "", {"", ""},
+    page_.table({"input",
+                 "",
+                 {"", ""},
                  {{"recording", record_.input},
                   {"camera", std::to_string(rig.camera.width) + "x" + std::to_string(rig.camera.height) + ", " +
                                  fixedText(rig.camera_rate_hz, 1) + " Hz"},

@@ -19,9 +19,9 @@ struct RunRecord {
   Rig calibration;            ///< as the recording came with
   RunCosts costs;             ///< of all but the report itself
   std::vector<std::string> recording_warnings;
-  StampedPoses groundtruth;   ///< empty if the recording carries none
-  std::string truth_fault;    ///< why it could not be read
-  std::string map_picture;    ///< bytes of a PNG; empty if none was made
+  StampedPoses groundtruth;  ///< empty if the recording carries none
+  std::string truth_fault;   ///< why it could not be read
+  std::string map_picture;   ///< bytes of a PNG; empty if none was made
 };
 
 /// The page report.html of lintel-vio.

@@ -46,20 +46,24 @@ Table calibrationTable(const RunRecord& record, const OdometryResult& result) {
   rows.add("k2", a.k2, b.k2, sigma.camera[5], c.k2, 4);
   const Pose &given = record.calibration.T_b_c, &window = last.T_b_c, &batch = result.rig.T_b_c;
   for (int axis = 0; axis < 3; ++axis)
-    rows.add(std::string("camera on the IMU, ") + "xyz"[axis] + " [m]", given.p[axis], window.p[axis], sigma.p_b_c_m[axis],
-             batch.p[axis], 4);
+    rows.add(std::string("camera on the IMU, ") + "xyz"[axis] + " [m]", given.p[axis], window.p[axis],
+             sigma.p_b_c_m[axis], batch.p[axis], 4);
   const Eigen::Vector3d window_rad = logRotation(given.q.conjugate() * window.q);
   const Eigen::Vector3d batch_rad = logRotation(given.q.conjugate() * batch.q);
   for (int axis = 0; axis < 3; ++axis)
     rows.add(std::string("camera turned about its ") + "xyz"[axis] + " [deg]", 0, kDegrees * window_rad[axis],
              kDegrees * sigma.R_b_c_rad[axis], kDegrees * batch_rad[axis], 3);
-  rows.add("time offset [ms]", 0, 1000 * last.time_offset_s, 1000 * sigma.time_offset_s, 1000 * result.time_offset_s, 3);
+  rows.add("time offset [ms]", 0, 1000 * last.time_offset_s, 1000 * sigma.time_offset_s, 1000 * result.time_offset_s,
+           3);
   return rows.table();
 }
 
 Table costsTable(const RunRecord& record, const OdometryResult& result) {
   const double process_ms = processTimeMs(), frames = std::max(1.0, static_cast<double>(result.statistics.frames));
-  Table table{"costs", "CPU time of the whole process", {"stage", "[s]", "a frame [ms]"}, {},
+  Table table{"costs",
+              "CPU time of the whole process",
+              {"stage", "[s]", "a frame [ms]"},
+              {},
               {"What drawing this page cost is in stats.json."}};
   for (const auto& [stage, ms] : record.costs.breakdown(result.statistics, process_ms))
     table.rows.push_back({stage, fixedText(ms / 1000, 3), fixedText(ms / frames, 2)});

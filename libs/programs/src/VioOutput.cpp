@@ -29,12 +29,9 @@ Json stageJson(std::vector<double> ms) {
 }
 
 Json stagesJson(const OdometryStatistics& s) {
-  Json stages{{"decoding", stageJson(s.decoding.ms())},
-              {"tracking", stageJson(s.tracking.ms())},
-              {"estimation", stageJson(s.estimation.ms())},
-              {"mapping", stageJson(s.mapping.ms())},
-              {"map fitting", stageJson(s.map_fitting.ms())},
-              {"refinement", stageJson(s.refinement.ms())}};
+  Json stages{{"decoding", stageJson(s.decoding.ms())},       {"tracking", stageJson(s.tracking.ms())},
+              {"estimation", stageJson(s.estimation.ms())},   {"mapping", stageJson(s.mapping.ms())},
+              {"map fitting", stageJson(s.map_fitting.ms())}, {"refinement", stageJson(s.refinement.ms())}};
   for (const auto& [name, times] : s.front_end.stages)
     stages["tracking: " + name] = stageJson(std::vector<double>(times.ms.begin(), times.ms.end()));
   return stages;
@@ -123,41 +120,40 @@ std::string statisticsJson(const OdometryResult& result, const Rig& given, const
                            const std::vector<std::string>& warnings) {
   const OdometryStatistics& s = result.statistics;
   const double wall_s = costs.wall_s, process_ms = processTimeMs();
-  const Json json{
-      {"frames", s.frames},
-      {"frames_with_pose", s.frames_with_pose},
-      {"first_frame_ns", s.first_frame_ns},
-      {"last_frame_ns", s.last_frame_ns},
-      {"window_frames", s.window_frames},
-      {"keyframes", s.keyframes},
-      {"first_pose_s", s.first_pose_s},
-      {"resets", s.resets},
-      {"reset_reasons", s.failures},
-      {"mean_points_used", s.mean_points_used},
-      {"mean_lines_tracked", s.mean_lines_tracked},
-      {"mean_lines_placed", s.mean_lines_placed},
-      {"mean_lines_used", s.mean_lines_used},
-      {"mean_lines_degenerate", s.mean_lines_degenerate},
-      {"mean_lines_constrained", s.mean_lines_constrained},
-      {"degenerate_share", s.mean_lines_placed > 0 ? s.mean_lines_degenerate / s.mean_lines_placed : 0},
-      {"mean_lines_degenerate_by_reason",
-       {{"through_epipole", s.mean_lines_through_epipole},
-        {"direction_unknown", s.mean_lines_direction_unknown},
-        {"distance_unknown", s.mean_lines_distance_unknown}}},
-      {"map_points", result.map.points.size()},
-      {"map_lines", result.map.lines.size()},
-      {"map_lines_beside", result.lines_beside},
-      {"refinement", refinementJson(result)},
-      {"calibration", calibrationJson(result, given)},
-      {"cpu_ms_per_frame", s.frames > 0 ? process_ms / static_cast<double>(s.frames) : 0},
-      {"cpu_ms", cpuJson(s, costs, process_ms)},
-      {"wall_s", wall_s},
-      {"frames_per_s", wall_s > 0 ? static_cast<double>(s.frames) / wall_s : 0},
-      {"peak_memory_mb", peakMemoryMb()},
-      {"stages", stagesJson(s)},
-      {"tracking", trackingJson(s.front_end)},
-      {"warnings", warnings},
-      {"ended_early", result.error}};
+  const Json json{{"frames", s.frames},
+                  {"frames_with_pose", s.frames_with_pose},
+                  {"first_frame_ns", s.first_frame_ns},
+                  {"last_frame_ns", s.last_frame_ns},
+                  {"window_frames", s.window_frames},
+                  {"keyframes", s.keyframes},
+                  {"first_pose_s", s.first_pose_s},
+                  {"resets", s.resets},
+                  {"reset_reasons", s.failures},
+                  {"mean_points_used", s.mean_points_used},
+                  {"mean_lines_tracked", s.mean_lines_tracked},
+                  {"mean_lines_placed", s.mean_lines_placed},
+                  {"mean_lines_used", s.mean_lines_used},
+                  {"mean_lines_degenerate", s.mean_lines_degenerate},
+                  {"mean_lines_constrained", s.mean_lines_constrained},
+                  {"degenerate_share", s.mean_lines_placed > 0 ? s.mean_lines_degenerate / s.mean_lines_placed : 0},
+                  {"mean_lines_degenerate_by_reason",
+                   {{"through_epipole", s.mean_lines_through_epipole},
+                    {"direction_unknown", s.mean_lines_direction_unknown},
+                    {"distance_unknown", s.mean_lines_distance_unknown}}},
+                  {"map_points", result.map.points.size()},
+                  {"map_lines", result.map.lines.size()},
+                  {"map_lines_beside", result.lines_beside},
+                  {"refinement", refinementJson(result)},
+                  {"calibration", calibrationJson(result, given)},
+                  {"cpu_ms_per_frame", s.frames > 0 ? process_ms / static_cast<double>(s.frames) : 0},
+                  {"cpu_ms", cpuJson(s, costs, process_ms)},
+                  {"wall_s", wall_s},
+                  {"frames_per_s", wall_s > 0 ? static_cast<double>(s.frames) / wall_s : 0},
+                  {"peak_memory_mb", peakMemoryMb()},
+                  {"stages", stagesJson(s)},
+                  {"tracking", trackingJson(s.front_end)},
+                  {"warnings", warnings},
+                  {"ended_early", result.error}};
   return json.dump(2) + "\n";
 }
 

@@ -57,7 +57,8 @@ TEST_F(BenchSuiteFile, APatternTakesAllRawlogsInTheOrderOfTheirNames) {
 }
 
 TEST_F(BenchSuiteFile, FaultsNameTheLine) {
-  EXPECT_THAT(faultOf(std::string("recordings: [a]\n") + kConfigurations + "colour: red\n"), HasSubstr("suite.yaml:5: unknown key 'colour'"));
+  EXPECT_THAT(faultOf(std::string("recordings: [a]\n") + kConfigurations + "colour: red\n"),
+              HasSubstr("suite.yaml:5: unknown key 'colour'"));
   EXPECT_THAT(faultOf("recordings: [a]\n"), HasSubstr("needs a list 'configurations'"));
   EXPECT_THAT(faultOf(std::string("recordings: [../a]\n") + kConfigurations), HasSubstr(":1: '../a' is no name"));
   EXPECT_THAT(faultOf(std::string("recordings: [a, a]\n") + kConfigurations), HasSubstr("there twice"));
@@ -66,8 +67,10 @@ TEST_F(BenchSuiteFile, FaultsNameTheLine) {
 }
 
 TEST_F(BenchSuiteFile, JobsAreRecordingsTimesConfigurationsTimesRepetitions) {
-  const BenchSuite suite = read(std::string("recordings: [MH_01, nowhere, {name: room, sim: {scene: room, blur: 0.01}}]\n"
-                                            "starts_s: [0, 2.5]\nseeds: [4, 5]\n") + kConfigurations);
+  const BenchSuite suite =
+      read(std::string("recordings: [MH_01, nowhere, {name: room, sim: {scene: room, blur: 0.01}}]\n"
+                       "starts_s: [0, 2.5]\nseeds: [4, 5]\n") +
+           kConfigurations);
   const auto jobs = jobsOf(suite, "/out");
   ASSERT_EQ(jobs.size(), 2u * 2 + 2 * 2 * 2);
   EXPECT_EQ(jobs[0].id, "MH_01/points/from0");

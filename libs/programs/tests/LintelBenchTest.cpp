@@ -37,9 +37,10 @@ echo '{"trajectory": {"position_m": {"rmse": '$rmse', "max": 0.05}, "coverage_ti
   "transform": {"scale": 1, "quaternion_xyzw": [0, 0, 0, 1], "translation_m": [0, 0, 0]}}}' > "$2"
 )";
 
-constexpr const char* kSim = "#!/bin/sh\necho sim >> \"$(dirname \"$0\")/calls\"\nmkdir -p \"$2/mav0/cam0\"\n"
-                             "mkdir -p \"$2/mav0/state_groundtruth_estimate0\"\n"
-                             "printf '#t\\n0,0,0,0,1,0,0,0\\n' > \"$2/mav0/state_groundtruth_estimate0/data.csv\"\n";
+constexpr const char* kSim =
+    "#!/bin/sh\necho sim >> \"$(dirname \"$0\")/calls\"\nmkdir -p \"$2/mav0/cam0\"\n"
+    "mkdir -p \"$2/mav0/state_groundtruth_estimate0\"\n"
+    "printf '#t\\n0,0,0,0,1,0,0,0\\n' > \"$2/mav0/state_groundtruth_estimate0/data.csv\"\n";
 
 std::string bytesOf(const fs::path& path) {
   std::ifstream file(path, std::ios::binary);
@@ -61,14 +62,15 @@ class LintelBenchProgram : public ::testing::Test {
       fs::create_directories(mav0 / "state_groundtruth_estimate0");
       std::ofstream(mav0 / "state_groundtruth_estimate0/data.csv") << "#t\n0,0,0,0,1,0,0,0\n1000000000,1,0,0,1,0,0,0\n";
     }
-    suite("recordings: [half, whole, {name: made, sim: {scene: room}}]\n"
-          "configurations:\n  - {name: points}\n  - {name: lines}\n");
+    suite(
+        "recordings: [half, whole, {name: made, sim: {scene: room}}]\n"
+        "configurations:\n  - {name: points}\n  - {name: lines}\n");
   }
   void suite(const std::string& text) const { std::ofstream(folder_ / "suite.yaml") << text; }
 
   int run(const std::vector<std::string>& more, const std::string& out = "out") {
-    const std::vector<std::string> all{folder_ / "suite.yaml", "-o", folder_ / out, "--recordings", folder_ / "data",
-                                       "--programs", folder_ / "bin"};
+    const std::vector<std::string> all{folder_ / "suite.yaml", "-o",         folder_ / out,  "--recordings",
+                                       folder_ / "data",       "--programs", folder_ / "bin"};
     std::vector<const char*> argv{"lintel-bench"};
     for (const std::string& word : all) argv.push_back(word.c_str());
     for (const std::string& word : more) argv.push_back(word.c_str());
@@ -112,8 +114,9 @@ TEST_F(LintelBenchProgram, HalfARecordingNeverWins) {
 }
 
 TEST_F(LintelBenchProgram, AFailingRunIsIsolatedAndNamed) {
-  suite("recordings: [whole]\nconfigurations:\n  - {name: good}\n  - {name: crash, set: [fault=crash]}\n"
-        "  - {name: complain, set: [fault=complain]}\n");
+  suite(
+      "recordings: [whole]\nconfigurations:\n  - {name: good}\n  - {name: crash, set: [fault=crash]}\n"
+      "  - {name: complain, set: [fault=complain]}\n");
   EXPECT_EQ(run({}), 1);
   EXPECT_THAT(err_.str(), HasSubstr("2 of 3 runs failed"));
   const std::string faults = bytesOf(folder_ / "out/tables/faults.txt");

@@ -110,7 +110,8 @@ TEST_F(LintelVioTest, LeavesOutLinesThatCrowdTheMapAndSaysSo) {
   const int beside = spaced["map_lines_beside"];
   EXPECT_GT(beside, reference["map_lines_beside"].get<int>());
   EXPECT_EQ(spaced["map_lines"].get<int>() + beside,
-            reference["map_lines"].get<int>() + reference["map_lines_beside"].get<int>()) << "the lines are the same";
+            reference["map_lines"].get<int>() + reference["map_lines_beside"].get<int>())
+      << "the lines are the same";
   EXPECT_EQ(readMap(out("spaced") + "/map.lintel").lines.size(), spaced["map_lines"]);
   EXPECT_THAT(r.out, HasSubstr(std::to_string(beside) + " more lines run beside better seen ones"));
 }

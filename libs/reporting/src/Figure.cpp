@@ -69,11 +69,15 @@ std::string titleWord(const std::string& title) { return title.empty() ? " notit
 std::string plotWords(const Curve& curve, const std::string& colour) {
   const std::string lines = " lw " + number(curve.width) + " lc rgb " + quoted(colour) + (curve.dashed ? " dt 2" : "");
   switch (curve.style) {
-    case CurveStyle::kDots: return " using 1:2 with points pt 7 ps 0.3 lc rgb " + quoted(colour);
-    case CurveStyle::kSteps: return " using 1:2 with steps" + lines;
-    case CurveStyle::kBand: return " using 1:2:3 with filledcurves fs transparent solid 0.25 noborder lc rgb " + quoted(colour);
+    case CurveStyle::kDots:
+      return " using 1:2 with points pt 7 ps 0.3 lc rgb " + quoted(colour);
+    case CurveStyle::kSteps:
+      return " using 1:2 with steps" + lines;
+    case CurveStyle::kBand:
+      return " using 1:2:3 with filledcurves fs transparent solid 0.25 noborder lc rgb " + quoted(colour);
     case CurveStyle::kLine:
-    case CurveStyle::kSegments: break;
+    case CurveStyle::kSegments:
+      break;
   }
   return " using 1:2 with lines" + lines;
 }
@@ -96,9 +100,11 @@ class Script {
 };
 
 std::string settingsOf(const Figure& figure) {
-  std::string s = "set encoding utf8\nset terminal svg noenhanced fixed rounded size " + std::to_string(figure.width_px) +
-                  "," + std::to_string(figure.height_px) + " font \"sans-serif,14\" background \"white\"\n";
-  s += "set grid lc rgb \"#dddddd\" lw 0.7\nset border 3 lc rgb \"#666666\"\nset tics nomirror textcolor rgb \"#222222\"\n";
+  std::string s = "set encoding utf8\nset terminal svg noenhanced fixed rounded size " +
+                  std::to_string(figure.width_px) + "," + std::to_string(figure.height_px) +
+                  " font \"sans-serif,14\" background \"white\"\n";
+  s += "set grid lc rgb \"#dddddd\" lw 0.7\nset border 3 lc rgb \"#666666\"\nset tics nomirror textcolor rgb "
+       "\"#222222\"\n";
   s += "set key outside top center horizontal samplen 2\nset style line 1 lw 1.5\n";
   if (!figure.title.empty()) s += "set title " + quoted(figure.title) + "\n";
   s += "set xlabel " + quoted(figure.x_label) + "\nset ylabel " + quoted(figure.y_label) + "\n";
@@ -130,7 +136,8 @@ std::string scriptOf(const Figure& figure) {
     script.add(dataOf(curve), plotWords(curve, colour) + titleWord(curve.title));
   }
   for (const BoxSeries& series : figure.boxes) {
-    const std::string colour = quoted(series.colour.empty() ? plotColour(place++) : series.colour), data = dataOf(series);
+    const std::string colour = quoted(series.colour.empty() ? plotColour(place++) : series.colour),
+                      data = dataOf(series);
     script.add(data, " using 1:3:2:6:5:7 with candlesticks fs transparent solid 0.3 lw 1.2 lc rgb " + colour +
                          titleWord(series.title) + " whiskerbars 0.5");
     script.add(data, " using 1:4:4:4:4:7 with candlesticks lw 2.5 lc rgb " + colour + " notitle");  // the median

@@ -63,11 +63,20 @@ std::string escaped(std::string_view text) {
   std::string result;
   for (const char c : text) {
     switch (c) {
-      case '&': result += "&amp;"; break;
-      case '<': result += "&lt;"; break;
-      case '>': result += "&gt;"; break;
-      case '"': result += "&quot;"; break;
-      default: result += c;
+      case '&':
+        result += "&amp;";
+        break;
+      case '<':
+        result += "&lt;";
+        break;
+      case '>':
+        result += "&gt;";
+        break;
+      case '"':
+        result += "&quot;";
+        break;
+      default:
+        result += c;
     }
   }
   return result;
@@ -123,7 +132,8 @@ std::string HtmlPage::bodyWithFigures() const {
     if (drawn[i].fault.empty())
       body += imageFigure("data:image/svg+xml," + percentEncoded(drawn[i].svg), placed.description);
     else if (!plots_missing)
-      body += "<p class=\"note\">No picture (" + escaped(placed.description) + "): " + escaped(drawn[i].fault) + "</p>\n";
+      body +=
+          "<p class=\"note\">No picture (" + escaped(placed.description) + "): " + escaped(drawn[i].fault) + "</p>\n";
     plots_missing = plots_missing || drawn[i].fault.find("install") != std::string::npos;
   }
   return body.append(body_, done, std::string::npos);
@@ -137,11 +147,11 @@ void HtmlPage::beginGallery() { body_ += "<div class=\"gallery\">\n"; }
 void HtmlPage::endGallery() { body_ += "</div>\n"; }
 
 std::string HtmlPage::text() const {
-  std::string page = "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n"
-                     "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n"
-                     "<link rel=\"icon\" href=\"data:,\">\n<title>" +
-                     escaped(title_) + "</title>\n<style>" + kStyle + "</style>\n</head>\n<body>\n<h1>" + escaped(title_) +
-                     "</h1>\n";
+  std::string page =
+      "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n"
+      "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n"
+      "<link rel=\"icon\" href=\"data:,\">\n<title>" +
+      escaped(title_) + "</title>\n<style>" + kStyle + "</style>\n</head>\n<body>\n<h1>" + escaped(title_) + "</h1>\n";
   if (sections_.size() > 1) {
     page += "<nav>";
     for (std::size_t i = 0; i < sections_.size(); ++i)

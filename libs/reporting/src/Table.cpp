@@ -79,10 +79,14 @@ std::string htmlOf(const Table& table) {
     html += "<tr>";
     for (std::size_t i = 0; i < row.size(); ++i) {
       const std::string text = escaped(row[i].text);
-      if (i == 0) html += "<th scope=\"row\">" + text + "</th>";
-      else if (row[i].mark == CellMark::kBest) html += "<td><b>" + text + "</b></td>";
-      else if (row[i].mark == CellMark::kFault) html += "<td class=\"fault\">" + text + "</td>";
-      else html += "<td>" + text + "</td>";
+      if (i == 0)
+        html += "<th scope=\"row\">" + text + "</th>";
+      else if (row[i].mark == CellMark::kBest)
+        html += "<td><b>" + text + "</b></td>";
+      else if (row[i].mark == CellMark::kFault)
+        html += "<td class=\"fault\">" + text + "</td>";
+      else
+        html += "<td>" + text + "</td>";
     }
     html += "</tr>\n";
   }

@@ -14,7 +14,8 @@ Table sample() {
   return {"accuracy",
           "Errors [m]",
           {"recording", "points", "lines"},
-          {{"hall", {"0.021", CellMark::kNone}, {"0.019", CellMark::kBest}}, {"a,b", {"failed <3>", CellMark::kFault}, "-"}},
+          {{"hall", {"0.021", CellMark::kNone}, {"0.019", CellMark::kBest}},
+           {"a,b", {"failed <3>", CellMark::kFault}, "-"}},
           {"* best"}};
 }
 

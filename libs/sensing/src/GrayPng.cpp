@@ -41,7 +41,8 @@ bool forEachChunk(const std::vector<std::uint8_t>& file, const Visit& visit) {
   for (std::size_t at = 8; at + 12 <= file.size();) {
     const std::uint8_t* chunk = &file[at];
     const std::size_t size = number(chunk);
-    if (size > file.size() - at - 12 || libdeflate_crc32(0, chunk + 4, size + 4) != number(chunk + 8 + size)) return false;
+    if (size > file.size() - at - 12 || libdeflate_crc32(0, chunk + 4, size + 4) != number(chunk + 8 + size))
+      return false;
     const std::string_view type(reinterpret_cast<const char*>(chunk) + 4, 4);
     visit(type, chunk + 8, size);
     if (type == "IEND") return true;

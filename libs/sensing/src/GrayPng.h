@@ -13,7 +13,8 @@ namespace lintel {
 /// time. Empty for every other kind of image, and for one that is damaged.
 std::optional<GrayImage> decodeGrayPng(const std::vector<std::uint8_t>& file);
 
-/// Whether a file is a PNG of any kind, but cut or changed: libpng would complain about it on the standard error output.
+/// Whether a file is a PNG of any kind, but cut or changed: libpng would complain about it on the standard error
+/// output.
 bool isDamagedPng(const std::vector<std::uint8_t>& file);
 
 }  // namespace lintel

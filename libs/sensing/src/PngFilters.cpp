@@ -19,7 +19,8 @@ Lanes absolute(const Lanes& v) { return v < 0 ? -v : v; }
 
 /// Of left, up and upper left the one nearest to left + up - upper left.
 Lanes paeth(const Lanes& left, const Lanes& up, const Lanes& corner) {
-  const Lanes to_left = absolute(up - corner), to_up = absolute(left - corner), to_corner = absolute(up + left - corner - corner);
+  const Lanes to_left = absolute(up - corner), to_up = absolute(left - corner),
+              to_corner = absolute(up + left - corner - corner);
   const Lanes nearer = to_up < to_left ? up : left, distance = to_up < to_left ? to_up : to_left;
   return to_corner < distance ? corner : nearer;
 }
@@ -47,7 +48,8 @@ void paethRows(const std::uint8_t* rows, std::size_t width, const std::uint8_t* 
 }
 
 int paeth(int left, int up, int corner) {
-  const int to_left = std::abs(up - corner), to_up = std::abs(left - corner), to_corner = std::abs(up + left - 2 * corner);
+  const int to_left = std::abs(up - corner), to_up = std::abs(left - corner),
+            to_corner = std::abs(up + left - 2 * corner);
   if (to_left <= to_up && to_left <= to_corner) return left;
   return to_up <= to_corner ? up : corner;
 }

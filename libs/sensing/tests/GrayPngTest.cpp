@@ -15,8 +15,8 @@ cv::Mat somePicture(int width, int height) {
   for (int y = 0; y < height; ++y)
     for (int x = 0; x < width; ++x) {
       noise = noise * 1664525u + 1013904223u;
-      picture.at<std::uint8_t>(y, x) =
-          static_cast<std::uint8_t>((x * y / 50 + (x / 9 % 2) * 70 + (y % 40 < 20 ? 3 * y : 0) + (y > 60 ? noise >> 29 : 0)) & 255);
+      picture.at<std::uint8_t>(y, x) = static_cast<std::uint8_t>(
+          (x * y / 50 + (x / 9 % 2) * 70 + (y % 40 < 20 ? 3 * y : 0) + (y > 60 ? noise >> 29 : 0)) & 255);
     }
   return picture;
 }

@@ -49,7 +49,8 @@ class ImageRenderer::Impl {
     for (int y = 0; y < height; ++y) castRow(view, y, image, patch_of);
     for (int y = 0; y < height; ++y) {
       for (int x = 0; x < width; ++x) {
-        if (surfacesMeet(patch_of, x, y)) image[static_cast<std::size_t>(y) * width + x] = supersample(view, x, y, edges);
+        if (surfacesMeet(patch_of, x, y))
+          image[static_cast<std::size_t>(y) * width + x] = supersample(view, x, y, edges);
       }
     }
     return image;

@@ -67,14 +67,15 @@ class SurfaceDistance::Impl {
   explicit Impl(std::vector<Triangle> triangles)
       : triangles_(std::move(triangles)), device_(rtcNewDevice(nullptr)), scene_(rtcNewScene(device_)) {
     RTCGeometry geometry = rtcNewGeometry(device_, RTC_GEOMETRY_TYPE_TRIANGLE);
-    auto* vertices = static_cast<float*>(rtcSetNewGeometryBuffer(
-        geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, 3 * sizeof(float), 3 * triangles_.size()));
-    auto* indices = static_cast<unsigned*>(rtcSetNewGeometryBuffer(
-        geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, 3 * sizeof(unsigned), triangles_.size()));
+    auto* vertices = static_cast<float*>(rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3,
+                                                                 3 * sizeof(float), 3 * triangles_.size()));
+    auto* indices = static_cast<unsigned*>(rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3,
+                                                                   3 * sizeof(unsigned), triangles_.size()));
     if (!vertices || !indices) throw std::runtime_error("Embree: no memory for the true surfaces");
     for (std::size_t i = 0; i < 3 * triangles_.size(); ++i) {
       indices[i] = static_cast<unsigned>(i);
-      for (int k = 0; k < 3; ++k) vertices[3 * i + static_cast<std::size_t>(k)] = static_cast<float>(triangles_[i / 3][i % 3][k]);
+      for (int k = 0; k < 3; ++k)
+        vertices[3 * i + static_cast<std::size_t>(k)] = static_cast<float>(triangles_[i / 3][i % 3][k]);
     }
     rtcCommitGeometry(geometry);
     rtcAttachGeometry(scene_, geometry);
@@ -92,7 +93,8 @@ class SurfaceDistance::Impl {
 
   double nearest(const Eigen::Vector3d& p) const {
     Search search{&triangles_, p, std::numeric_limits<double>::infinity()};
-    RTCPointQuery query{static_cast<float>(p.x()), static_cast<float>(p.y()), static_cast<float>(p.z()), 0, kFarthest_m};
+    RTCPointQuery query{static_cast<float>(p.x()), static_cast<float>(p.y()), static_cast<float>(p.z()), 0,
+                        kFarthest_m};
     RTCPointQueryContext context;
     rtcInitPointQueryContext(&context);
     rtcPointQuery(scene_, &query, &context, &Impl::visit, &search);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A written recording held against itself by nothing of ours: files are read line by line, lines are projected and edges
-// found by OpenCV, the IMU is integrated in the plainest way.
+// A written recording held against itself by nothing of ours: files are read line by line, lines are projected and
+// edges found by OpenCV, the IMU is integrated in the plainest way.
 #include <gtest/gtest.h>
 #include <unistd.h>
 
@@ -100,7 +100,8 @@ TEST_F(RecordingFiles, TheImuIntegratesToThePoses) {
 }
 
 TEST_F(RecordingFiles, ProjectedLinesLieOnImageEdges) {
-  const Row K = listOf(mav0_ / "cam0/sensor.yaml", "intrinsics"), D = listOf(mav0_ / "cam0/sensor.yaml", "distortion_coefficients"),
+  const Row K = listOf(mav0_ / "cam0/sensor.yaml", "intrinsics"),
+            D = listOf(mav0_ / "cam0/sensor.yaml", "distortion_coefficients"),
             T = listOf(mav0_ / "cam0/sensor.yaml", "data:");
   ASSERT_EQ(K.size(), 4u);
   ASSERT_EQ(T.size(), 16u);

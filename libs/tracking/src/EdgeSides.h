@@ -15,12 +15,12 @@ struct EdgeSides {
   float mean() const { return 0.5f * (dark + bright); }
 };
 
-/// What lies beside an edge, a few pixels off: neighbouring edges of the same direction and sign differ in it. Empty where
-/// too little of the segment is in the image (8 bit grey).
+/// What lies beside an edge, a few pixels off: neighbouring edges of the same direction and sign differ in it. Empty
+/// where too little of the segment is in the image (8 bit grey).
 std::optional<EdgeSides> sidesOf(const LineCamera& camera, const cv::Mat& image, const ImageLine& line);
 
-/// Whether an edge may be the one that had these grey levels beside it. Blur brings both sides nearer to each other, and
-/// their mean stays; the next step of a staircase has another mean.
+/// Whether an edge may be the one that had these grey levels beside it. Blur brings both sides nearer to each other,
+/// and their mean stays; the next step of a staircase has another mean.
 bool maybeSame(const EdgeSides& now, const EdgeSides& before);
 
 }  // namespace lintel

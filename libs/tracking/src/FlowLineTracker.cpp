@@ -16,7 +16,7 @@ constexpr double kNoise_px = 0.35;           ///< of an end across the line, fro
 constexpr double kSureDepth_px = 1.0;        ///< depths that say less are not asked
 constexpr double kFade = 0.8;                ///< of a drift, per frame
 constexpr double kMaxDrift_px = 4;           ///< a line that drifts further follows another edge
-constexpr double kJump_px = 2.5;               ///< so far from where it was expected a line must look as before
+constexpr double kJump_px = 2.5;             ///< so far from where it was expected a line must look as before
 constexpr double kSame_px = 1.0;             ///< one edge as seen twice in the same image
 
 }  // namespace

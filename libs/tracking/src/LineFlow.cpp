@@ -12,8 +12,8 @@ namespace lintel {
 namespace {
 
 constexpr double kMinTexture = 1e-3;  ///< a patch on a plain edge has nearly none along it, and is welcome
-constexpr double kSettled_px = 0.03;     ///< of optical flow
-constexpr double kSpacing_px = 15;       ///< between samples, when the line is neither short nor long
+constexpr double kSettled_px = 0.03;  ///< of optical flow
+constexpr double kSpacing_px = 15;    ///< between samples, when the line is neither short nor long
 constexpr double kFitTolerance_px = 1.5;
 constexpr float kNear_px = 20;          ///< points nearer than this weigh alike
 constexpr double kMaxSurprise_px = 40;  ///< flow further than this from the guess is a mistake

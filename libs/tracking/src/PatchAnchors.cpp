@@ -14,10 +14,10 @@ namespace {
 
 constexpr int kMaxIterations = 6;
 constexpr float kConverged_px = 0.01f;
-constexpr float kMaxShift_px = 1.5f;      ///< from where the flow has led
+constexpr float kMaxShift_px = 1.5f;  ///< from where the flow has led
 constexpr float kLeastCorrelation = 0.8f;
 constexpr float kLeastArea = 0.6f, kMostArea = 1.6f;  ///< of the view of a patch; beyond: a new patch
-constexpr float kNoise = 0.05f, kShear = 0.02f;         ///< of a pixel of a patch of norm 1; of the linear part in a step
+constexpr float kNoise = 0.05f, kShear = 0.02f;       ///< of a pixel of a patch of norm 1; of the linear part in a step
 constexpr int kMaxFailures = 3;
 
 /// Takes brightness and contrast out; false without any texture.
@@ -30,11 +30,13 @@ bool normalise(Patch& patch) {
   return true;
 }
 
-/// Grey levels of a square of 2 Half + 1 places a side, row by row, at place + A offset; false where it leaves the image.
+/// Grey levels of a square of 2 Half + 1 places a side, row by row, at place + A offset; false where it leaves the
+/// image.
 template <int Half>
 bool sampleSquare(const cv::Mat& image, const cv::Point2f& place, const Eigen::Matrix2f& A, float* grey) {
   constexpr int kSide = 2 * Half + 1;
-  const float reach_x = (std::abs(A(0, 0)) + std::abs(A(0, 1))) * Half, reach_y = (std::abs(A(1, 0)) + std::abs(A(1, 1))) * Half;
+  const float reach_x = (std::abs(A(0, 0)) + std::abs(A(0, 1))) * Half,
+              reach_y = (std::abs(A(1, 0)) + std::abs(A(1, 1))) * Half;
   if (!(place.x - reach_x >= 0 && place.y - reach_y >= 0 && place.x + reach_x < image.cols - 1 &&
         place.y + reach_y < image.rows - 1))
     return false;
@@ -97,7 +99,8 @@ bool PatchAnchors::alignPatch(const Anchor& anchor, const cv::Mat& image, Warp& 
     warp.A = warp.A * turned.inverse();
     const Eigen::Vector2f shift = warp.A * step.head<2>();
     warp.place -= cv::Point2f(shift.x(), shift.y());
-    if (!(std::hypot(warp.place.x - start.x, warp.place.y - start.y) < kMaxShift_px) || !(warp.A.determinant() > 0.1f)) return false;
+    if (!(std::hypot(warp.place.x - start.x, warp.place.y - start.y) < kMaxShift_px) || !(warp.A.determinant() > 0.1f))
+      return false;
     if (shift.norm() < kConverged_px) return seen.dot(anchor.patch) > kLeastCorrelation;
   }
   return sample(image, warp, seen) && normalise(seen) && seen.dot(anchor.patch) > kLeastCorrelation;

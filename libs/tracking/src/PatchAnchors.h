@@ -16,8 +16,8 @@ enum class AnchorVerdict {
   kLost,    ///< no such place for some frames: it has slipped off what it followed
 };
 
-/// Holds points to where they were first seen. Optical flow from frame to frame adds its errors up: after forty frames a
-/// track has slipped by half a pixel. Here the patch of the first sighting is aligned with the current image, turned,
+/// Holds points to where they were first seen. Optical flow from frame to frame adds its errors up: after forty frames
+/// a track has slipped by half a pixel. Here the patch of the first sighting is aligned with the current image, turned,
 /// scaled and sheared as the view demands, from where the flow has led [Baker2004, inverse compositional; Shi1994].
 class PatchAnchors {
  public:
@@ -43,10 +43,10 @@ class PatchAnchors {
   };
 
   struct Anchor {
-    Patch patch;                                            ///< mean 0, norm 1
-    Eigen::Matrix<float, kPixels, kParameters> J;           ///< of the patch, brightness and contrast taken out
+    Patch patch;                                             ///< mean 0, norm 1
+    Eigen::Matrix<float, kPixels, kParameters> J;            ///< of the patch, brightness and contrast taken out
     Eigen::Matrix<float, kParameters, kParameters> inverse;  ///< of J' J, damped
-    Eigen::Matrix2f A = Eigen::Matrix2f::Identity();        ///< in the last image that agreed
+    Eigen::Matrix2f A = Eigen::Matrix2f::Identity();         ///< in the last image that agreed
     int failures = 0;
   };
 

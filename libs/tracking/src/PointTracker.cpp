@@ -12,11 +12,11 @@
 namespace lintel {
 namespace {
 
-constexpr double kSettled_px = 0.03;     ///< of optical flow; patches settle old points
-constexpr double kMinTexture = 0.1;      ///< patches with less are lost [grey levels^2/px^2]
-constexpr int kSteadyLevels = 2;         ///< for points whose motion is known
-constexpr int kProven = 5;               ///< frames after which a point that looks like its patch needs no way back
-constexpr int kBackwardLevels = 1;       ///< the way back starts at the answer
+constexpr double kSettled_px = 0.03;  ///< of optical flow; patches settle old points
+constexpr double kMinTexture = 0.1;   ///< patches with less are lost [grey levels^2/px^2]
+constexpr int kSteadyLevels = 2;      ///< for points whose motion is known
+constexpr int kProven = 5;            ///< frames after which a point that looks like its patch needs no way back
+constexpr int kBackwardLevels = 1;    ///< the way back starts at the answer
 
 bool inside(const PinholeRadtan& camera, const cv::Point2f& p, double border) {
   return camera.contains({p.x, p.y}, border);
@@ -77,7 +77,8 @@ void PointTracker::followFrom(const ImagePyramid& pyramid, const std::vector<std
     from.emplace_back(static_cast<float>(points_[i].px.x()), static_cast<float>(points_[i].px.y()));
     to.push_back(followed.px[i]);
   }
-  const std::vector<unsigned char> found = followPatches(pyramid.previous(), pyramid.current(), from, flowParams(levels), to);
+  const std::vector<unsigned char> found =
+      followPatches(pyramid.previous(), pyramid.current(), from, flowParams(levels), to);
   const auto align = [&](std::size_t i) { return anchors_.align(points_[i].id, pyramid.image(), followed.px[i]); };
   std::vector<std::size_t> unsure, young;
   for (std::size_t k = 0; k < indices.size(); ++k) {
@@ -96,7 +97,8 @@ void PointTracker::followFrom(const ImagePyramid& pyramid, const std::vector<std
     if (followed.fate[i] == Fate::kAlive && align(i) == AnchorVerdict::kLost) followed.fate[i] = Fate::kLost;
 }
 
-void PointTracker::followBack(const ImagePyramid& pyramid, const std::vector<std::size_t>& indices, Followed& followed) const {
+void PointTracker::followBack(const ImagePyramid& pyramid, const std::vector<std::size_t>& indices,
+                              Followed& followed) const {
   if (indices.empty()) return;
   std::vector<cv::Point2f> from, to;
   for (const std::size_t i : indices) {

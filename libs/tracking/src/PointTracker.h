@@ -53,7 +53,8 @@ class PointTracker {
     std::vector<Fate> fate;
   };
 
-  /// Follows the points of `indices` from where `followed` guesses them; those that are not held to their patch also back.
+  /// Follows the points of `indices` from where `followed` guesses them; those that are not held to their patch also
+  /// back.
   void followFrom(const ImagePyramid& pyramid, const std::vector<std::size_t>& indices, int levels, Followed& followed);
   void followBack(const ImagePyramid& pyramid, const std::vector<std::size_t>& indices, Followed& followed) const;
   Followed follow(const ImagePyramid& pyramid, const GyroPrediction& gyro, PointStatistics& statistics);

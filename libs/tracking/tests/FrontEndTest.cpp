@@ -131,9 +131,9 @@ TEST(FrontEnd, parallelEdgesAtDifferentDepthsThatCrossKeepTheirNames) {
   const auto wall = testing::blobs(11);
   const double near_x = -0.35, far_x = -0.15;
   const std::vector<testing::Layer> layers = {
-      {2.0, post(near_x, 0.08, 150)}, {3.5, post(far_x, 0.5, 200)}, {6.0, [&](const Eigen::Vector2d& at) -> std::optional<double> {
-                                                            return 0.4 * wall(at);
-                                                          }}};
+      {2.0, post(near_x, 0.08, 150)},
+      {3.5, post(far_x, 0.5, 200)},
+      {6.0, [&](const Eigen::Vector2d& at) -> std::optional<double> { return 0.4 * wall(at); }}};
   const Rig rig = testing::testRig();
   FrontEnd front_end(rig, linesAtOnce());
   std::map<TrackId, std::set<char>> seen_on;
@@ -171,7 +171,8 @@ TEST(FrontEnd, anEdgeWhoseContrastTurnsRoundIsAnotherLine) {
 }
 
 TEST(FrontEnd, aNeighbouringEdgeIsAnotherLineUnlessItLooksTheSame) {
-  // Three parallel edges keep the step's typical motion small; the middle one is 2.6 px (0.0087) further down in the end.
+  // Three parallel edges keep the step's typical motion small; the middle one is 2.6 px (0.0087) further down in the
+  // end.
   const auto scene = [](double y, double dark, double bright) {
     return [=](const Eigen::Vector2d& x) {
       if (x.y() > y && x.y() < 0.12 && std::abs(x.x()) < 0.3) return bright;
@@ -185,7 +186,8 @@ TEST(FrontEnd, aNeighbouringEdgeIsAnotherLineUnlessItLooksTheSame) {
     return 0;
   };
   for (const bool looks_the_same : {true, false}) {
-    const auto tracks = trackTurning({before, before, before, before, looks_the_same ? same : other}, linesAtOnce(), {0, 0, 0});
+    const auto tracks =
+        trackTurning({before, before, before, before, looks_the_same ? same : other}, linesAtOnce(), {0, 0, 0});
     const TrackId id = middleId(tracks[3]);
     ASSERT_NE(id, 0u);
     EXPECT_EQ(middleId(tracks[4]) == id, looks_the_same);

@@ -16,7 +16,7 @@ namespace lintel {
 /// Standard deviations of a calibration; zero for what is held.
 struct CalibrationSigma {
   Eigen::Vector3d p_b_c_m = Eigen::Vector3d::Zero();
-  Eigen::Vector3d R_b_c_rad = Eigen::Vector3d::Zero();  ///< about the camera's axes
+  Eigen::Vector3d R_b_c_rad = Eigen::Vector3d::Zero();                       ///< about the camera's axes
   Eigen::Matrix<double, 6, 1> camera = Eigen::Matrix<double, 6, 1>::Zero();  ///< fx fy cx cy [px], k1 k2
   double time_offset_s = 0;
 };
@@ -25,7 +25,7 @@ struct CalibrationSigma {
 struct CalibrationEstimate {
   PinholeRadtan camera;
   Pose T_b_c;
-  double time_offset_s = 0;  ///< an image with stamp t shows the world at t + offset
+  double time_offset_s = 0;               ///< an image with stamp t shows the world at t + offset
   std::optional<CalibrationSigma> sigma;  ///< of the last window; empty while there is none
 };
 

@@ -7,12 +7,12 @@ namespace lintel {
 
 /// How observations become residuals.
 struct FactorParams {
-  double point_sigma_px = 0.7;        ///< standard deviation of a tracked point [px]
-  double point_loss_width = 1.5;      ///< Cauchy width, in standard deviations
-  double line_sigma_px = 1.0;         ///< scales LineObservation::sigma_px
-  double line_loss_width = 1.5;       ///< Cauchy width, in standard deviations
-  bool adaptive_weights = false;      ///< sigmas of points and lines follow their residuals, within twice and half
-  double gyro_noise_scale = 1.0;      ///< of the rig's noise density: calibrated densities omit vibration
+  double point_sigma_px = 0.7;    ///< standard deviation of a tracked point [px]
+  double point_loss_width = 1.5;  ///< Cauchy width, in standard deviations
+  double line_sigma_px = 1.0;     ///< scales LineObservation::sigma_px
+  double line_loss_width = 1.5;   ///< Cauchy width, in standard deviations
+  bool adaptive_weights = false;  ///< sigmas of points and lines follow their residuals, within twice and half
+  double gyro_noise_scale = 1.0;  ///< of the rig's noise density: calibrated densities omit vibration
   double accel_noise_scale = 1.0;
   double gyro_walk_scale = 1.0;
   double accel_walk_scale = 1.0;
@@ -34,7 +34,7 @@ struct FactorParams {
 /// What of the calibration is refined, and how well it is known before (standard deviations of the priors).
 struct CalibrationParams {
   bool refine_extrinsics = true;
-  bool refine_camera = true;                 ///< fx fy cx cy k1 k2
+  bool refine_camera = true;  ///< fx fy cx cy k1 k2
   bool refine_time_offset = true;
   double extrinsic_rotation_sigma_rad = 0.005;
   double extrinsic_translation_sigma_m = 0.005;
@@ -59,13 +59,13 @@ struct CalibrationParams {
 
 /// When a track becomes part of the problem, and when it is thrown out.
 struct LandmarkParams {
-  int point_min_observations = 3;        ///< window frames
-  double point_max_relative_sigma = 0.3; ///< of the inverse depth when a track enters the problem
-  double point_max_error_px = 3.0;       ///< mean reprojection error above which a track is an outlier
+  int point_min_observations = 3;         ///< window frames
+  double point_max_relative_sigma = 0.3;  ///< of the inverse depth when a track enters the problem
+  double point_max_error_px = 3.0;        ///< mean reprojection error above which a track is an outlier
   double max_depth_m = 200;
   double min_depth_m = 0.1;
-  int line_min_observations = 4;         ///< window frames
-  double line_max_error_px = 3.0;        ///< mean distance of the end points
+  int line_min_observations = 4;   ///< window frames
+  double line_max_error_px = 3.0;  ///< mean distance of the end points
 
   template <class F>
   void fields(F&& field) {
@@ -81,7 +81,7 @@ struct LandmarkParams {
 
 /// Which lines are degenerate, and what becomes of them.
 struct DegeneracyParams {
-  std::string lines = "constrain";   ///< use: as they are [PL-VINS]; drop: not at all; constrain: tied to parallel ones
+  std::string lines = "constrain";  ///< use: as they are [PL-VINS]; drop: not at all; constrain: tied to parallel ones
   std::string test = "observability";  ///< epipole: [Lim2021]; observability: from a line's information; both: either
   double max_sigma_direction_rad = 0.10;  ///< observability: above, the direction is unknown
   double max_sigma_distance = 0.10;       ///< observability: of the depth; above, the distance is unknown
@@ -107,17 +107,17 @@ struct DegeneracyParams {
 
 /// The way into the window; see Initializer.
 struct InitializerParams {
-  int min_frames = 10;                   ///< window frames (estimator rate) before the first attempt
-  int max_frames = 20;                   ///< older ones are dropped
-  double min_parallax_px = 12;           ///< rotation-compensated, median, over the buffer; below: static or waiting
-  double max_error_px = 2.0;             ///< median reprojection error of an accepted start
-  double max_scale_sigma = 0.05;         ///< relative standard deviation of the scale of an accepted start
-  double max_bias_accel = 1.5;           ///< [m/s^2]
-  double bias_gyro_sigma = 0.1;          ///< prior [rad/s]
-  double bias_accel_sigma = 0.2;         ///< prior [m/s^2]
-  double static_disparity_px = 0.7;      ///< median motion of points over the buffer below which the vehicle rests
-  double static_gyro_std = 0.03;         ///< [rad/s] and
-  double static_accel_std = 0.4;         ///< [m/s^2]: standard deviations over the buffer at rest
+  int min_frames = 10;               ///< window frames (estimator rate) before the first attempt
+  int max_frames = 20;               ///< older ones are dropped
+  double min_parallax_px = 12;       ///< rotation-compensated, median, over the buffer; below: static or waiting
+  double max_error_px = 2.0;         ///< median reprojection error of an accepted start
+  double max_scale_sigma = 0.05;     ///< relative standard deviation of the scale of an accepted start
+  double max_bias_accel = 1.5;       ///< [m/s^2]
+  double bias_gyro_sigma = 0.1;      ///< prior [rad/s]
+  double bias_accel_sigma = 0.2;     ///< prior [m/s^2]
+  double static_disparity_px = 0.7;  ///< median motion of points over the buffer below which the vehicle rests
+  double static_gyro_std = 0.03;     ///< [rad/s] and
+  double static_accel_std = 0.4;     ///< [m/s^2]: standard deviations over the buffer at rest
 
   template <class F>
   void fields(F&& field) {
@@ -137,11 +137,11 @@ struct InitializerParams {
 
 /// What counts as lost.
 struct FailureParams {
-  int min_points = 4;                    ///< points and lines tracked into the newest frame; with fewer it is blind
-  int max_blind_frames = 20;             ///< window frames in a row that the IMU may bridge
-  double max_bias_accel = 2.5;           ///< [m/s^2] [Qin2018]
-  double max_bias_gyro = 1.0;            ///< [rad/s] [Qin2018]
-  double max_step_m = 2.0;               ///< difference between the predicted and the estimated position of a frame
+  int min_points = 4;           ///< points and lines tracked into the newest frame; with fewer it is blind
+  int max_blind_frames = 20;    ///< window frames in a row that the IMU may bridge
+  double max_bias_accel = 2.5;  ///< [m/s^2] [Qin2018]
+  double max_bias_gyro = 1.0;   ///< [rad/s] [Qin2018]
+  double max_step_m = 2.0;      ///< difference between the predicted and the estimated position of a frame
   double max_step_rad = 0.5;
 
   template <class F>
@@ -156,14 +156,14 @@ struct FailureParams {
 };
 
 struct EstimatorParams {
-  int every_nth_frame = 2;               ///< frames that enter the window; the others get an IMU-propagated pose
-  int keyframes = 11;                    ///< in the window, beside the newest frame [Qin2018: 10]
-  double keyframe_parallax_px = 15;      ///< mean motion of the points since the last keyframe [Qin2018: 10]
-  int keyframe_min_tracked = 20;         ///< fewer points shared with the last keyframe make a new one
-  double max_keyframe_interval_s = 10;   ///< a keyframe at least this often, also at rest
+  int every_nth_frame = 2;              ///< frames that enter the window; the others get an IMU-propagated pose
+  int keyframes = 11;                   ///< in the window, beside the newest frame [Qin2018: 10]
+  double keyframe_parallax_px = 15;     ///< mean motion of the points since the last keyframe [Qin2018: 10]
+  int keyframe_min_tracked = 20;        ///< fewer points shared with the last keyframe make a new one
+  double max_keyframe_interval_s = 10;  ///< a keyframe at least this often, also at rest
   int max_iterations = 8;
-  double rest_disparity_px = 0.25;       ///< median motion between window frames below which rest is assumed
-  double rest_velocity_sigma = 0.01;     ///< zero-velocity observation at rest [m/s]
+  double rest_disparity_px = 0.25;    ///< median motion between window frames below which rest is assumed
+  double rest_velocity_sigma = 0.01;  ///< zero-velocity observation at rest [m/s]
   FactorParams factors;
   CalibrationParams calibration;
   LandmarkParams landmarks;

@@ -34,11 +34,11 @@ struct BlockKey {
 struct WindowFrame {
   FrameId id = 0;
   std::int64_t t_ns = 0;
-  PoseBlock pose = toBlock(Pose{});              ///< T_w_b
-  MotionBlock motion = MotionBlock::Zero();      ///< velocity and biases
-  std::shared_ptr<Preintegration> imu;           ///< from the frame before; null for the first
+  PoseBlock pose = toBlock(Pose{});                ///< T_w_b
+  MotionBlock motion = MotionBlock::Zero();        ///< velocity and biases
+  std::shared_ptr<Preintegration> imu;             ///< from the frame before; null for the first
   Eigen::Vector3d gyro = Eigen::Vector3d::Zero();  ///< measured at t_ns, bias included [rad/s]
-  bool at_rest = false;                          ///< gets a zero-velocity observation
+  bool at_rest = false;                            ///< gets a zero-velocity observation
 
   Pose T_w_b() const { return poseFromBlock(pose.data()); }
   FrameMotion bodyMotion() const {
@@ -63,17 +63,17 @@ struct LineSighting {
 /// A point: homogeneous, world axes, relative to `origin_w` (PointFactor.h).
 struct PointTrack {
   TrackId id = 0;
-  std::vector<PointSighting> sightings;           ///< in window frames, in their order
-  std::vector<PointSighting> former;              ///< in keyframes that have left the window
+  std::vector<PointSighting> sightings;  ///< in window frames, in their order
+  std::vector<PointSighting> former;     ///< in keyframes that have left the window
   PointBlock point = PointBlock::Zero();
   Eigen::Vector3d origin_w = Eigen::Vector3d::Zero();
-  double sigma_inverse_depth = 0;                 ///< along the ray of the first sighting [1/m]; the best so far
+  double sigma_inverse_depth = 0;  ///< along the ray of the first sighting [1/m]; the best so far
   bool triangulated = false;
 };
 
 /// What the observations say about a line. From kThroughEpipole on it is degenerate.
 enum class LineVerdict {
-  kNone,              ///< not triangulated
+  kNone,  ///< not triangulated
   kGood,
   kThroughEpipole,    ///< the test of [Lim2021]: it lies in one plane with the motion
   kDirectionUnknown,  ///< by its information: LineDegeneracy.h
@@ -83,7 +83,7 @@ enum class LineVerdict {
 /// A direction that lines share.
 struct SharedDirection {
   DirectionBlock d_w = DirectionBlock::UnitX();
-  FrameId last_used = 0;   ///< newest frame that had a member
+  FrameId last_used = 0;  ///< newest frame that had a member
 };
 
 /// A line as it was known once.
@@ -102,11 +102,11 @@ struct LineTrack {
   Eigen::Vector3d origin_w = Eigen::Vector3d::Zero();
   bool triangulated = false;
   LineVerdict verdict = LineVerdict::kNone;
-  std::uint64_t group = 0;                        ///< direction it is tied to; 0: none
-  bool placed = true;                             ///< false: in a group, and its distance is not known
-  bool alone = false;                             ///< its end points have contradicted such a direction
+  std::uint64_t group = 0;  ///< direction it is tied to; 0: none
+  bool placed = true;       ///< false: in a group, and its distance is not known
+  bool alone = false;       ///< its end points have contradicted such a direction
   double sigma_direction_rad = 0, sigma_distance_m = 0;
-  std::optional<KnownLine> best;                  ///< when marginalisation used up its sightings, if it was good then
+  std::optional<KnownLine> best;  ///< when marginalisation used up its sightings, if it was good then
 
   bool degenerate() const { return verdict > LineVerdict::kGood; }
 };
@@ -122,23 +122,23 @@ class SlidingWindow {
  public:
   explicit SlidingWindow(const Rig& rig);
 
-  std::deque<WindowFrame> frames;             ///< ascending time; the last is the newest
-  std::map<TrackId, PointTrack> points;       ///< ordered: the same sums in the same order every run
+  std::deque<WindowFrame> frames;        ///< ascending time; the last is the newest
+  std::map<TrackId, PointTrack> points;  ///< ordered: the same sums in the same order every run
   std::map<TrackId, LineTrack> lines;
   std::map<std::uint64_t, SharedDirection> directions;  ///< of groups of parallel lines; ids from 1
   std::uint64_t next_direction = 1;
-  PoseBlock extrinsics;                       ///< T_b_c
+  PoseBlock extrinsics;  ///< T_b_c
   CorrectionBlock correction = CorrectionBlock::Zero();
-  std::vector<WindowPrior> priors;            ///< from marginalisation and from initialisation
+  std::vector<WindowPrior> priors;  ///< from marginalisation and from initialisation
 
-  const PinholeRadtan& camera() const { return camera_; }   ///< as calibrated; `correction` is on top
+  const PinholeRadtan& camera() const { return camera_; }  ///< as calibrated; `correction` is on top
   PinholeRadtan correctedCamera() const;
   Pose T_b_c() const { return poseFromBlock(extrinsics.data()); }
 
   bool contains(FrameId id) const;
-  const WindowFrame& frame(FrameId id) const;                ///< throws std::out_of_range
+  const WindowFrame& frame(FrameId id) const;  ///< throws std::out_of_range
   WindowFrame& frame(FrameId id);
-  double* block(const BlockKey& key);                        ///< throws std::out_of_range
+  double* block(const BlockKey& key);  ///< throws std::out_of_range
 
   /// Appends a frame and its tracks.
   void addFrame(WindowFrame frame, const FrameTracks& tracks);

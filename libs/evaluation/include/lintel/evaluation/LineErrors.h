@@ -38,14 +38,16 @@ struct LineErrors {
   double length_m = 0;      ///< of the map
   double observable_m = 0;  ///< length of the true edges that count for recall
   std::vector<double> tolerances_m;
-  std::vector<double> surface_precision;  ///< share of the map within tolerance of a true surface; empty if none is known
+  std::vector<double>
+      surface_precision;          ///< share of the map within tolerance of a true surface; empty if none is known
   std::vector<double> precision;  ///< share of the map within tolerance and angle of a true edge
   std::vector<double> recall;     ///< share of the observable edges within tolerance and angle of the map
   SegmentErrors all_matched, degenerate_matched, well_determined_matched;
   SegmentErrors constrained_matched;  ///< direction held by parallel lines; degenerate or not
   double duplicates =
       std::numeric_limits<double>::quiet_NaN();  ///< matched length / length of the edges it covers; 1 = none
-  double duplicates_not_seen_apart = std::numeric_limits<double>::quiet_NaN();  ///< lines that images show as two left out
+  double duplicates_not_seen_apart =
+      std::numeric_limits<double>::quiet_NaN();  ///< lines that images show as two left out
 };
 
 /// Distance of a point of the true world to its nearest surface [m].

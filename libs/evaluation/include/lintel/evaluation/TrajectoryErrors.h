@@ -19,7 +19,7 @@ struct TrajectoryErrorParams {
   double complete_share = 0.9;     ///< a run that covers less of the duration after that time counts as incomplete
   std::int64_t from_ns = std::numeric_limits<std::int64_t>::min();  ///< the ground truth before it does not count
   std::int64_t to_ns = std::numeric_limits<std::int64_t>::max();    ///< the ground truth after it does not count
-  double max_overshoot = 0.2;      ///< a stretch of the path may be longer than asked for by this share
+  double max_overshoot = 0.2;  ///< a stretch of the path may be longer than asked for by this share
   std::vector<double> distances_m = {1, 2, 5, 10, 20};  ///< lengths of the stretches of the relative errors [m]
 };
 

@@ -25,9 +25,9 @@ class PriorFactor final : public ceres::CostFunction {
   bool Evaluate(double const* const* parameters, double* residuals, double** jacobians) const override;
 
   const std::vector<PriorBlock>& blocks() const { return blocks_; }
-  const Eigen::VectorXd& constant() const { return r_0_; }              ///< r_0
-  const Eigen::MatrixXd& root() const { return A_; }                    ///< A
-  const Eigen::MatrixXd& information() const { return information_; }   ///< A' A
+  const Eigen::VectorXd& constant() const { return r_0_; }             ///< r_0
+  const Eigen::MatrixXd& root() const { return A_; }                   ///< A
+  const Eigen::MatrixXd& information() const { return information_; }  ///< A' A
 
   /// x ⊟ x_0 of all blocks.
   Eigen::VectorXd difference(double const* const* parameters) const;

@@ -74,13 +74,15 @@ inline PinholeRadtan correctedCamera(PinholeRadtan camera, const double* correct
 inline Eigen::Matrix<double, 4, 3> rotationPlus(const Eigen::Quaterniond& q) {
   Eigen::Matrix<double, 4, 3> M;
   const double h = 0.5;
-  M << h * q.w(), -h * q.z(), h * q.y(), h * q.z(), h * q.w(), -h * q.x(), -h * q.y(), h * q.x(), h * q.w(),
-      -h * q.x(), -h * q.y(), -h * q.z();
+  M << h * q.w(), -h * q.z(), h * q.y(), h * q.z(), h * q.w(), -h * q.x(), -h * q.y(), h * q.x(), h * q.w(), -h * q.x(),
+      -h * q.y(), -h * q.z();
   return M;
 }
 
 /// The left inverse of rotationPlus: dtheta = rotationLift(q) * dq. Turns a Jacobian with respect to dtheta into one
 /// with respect to the four coefficients, as Ceres expects it.
-inline Eigen::Matrix<double, 3, 4> rotationLift(const Eigen::Quaterniond& q) { return 4.0 * rotationPlus(q).transpose(); }
+inline Eigen::Matrix<double, 3, 4> rotationLift(const Eigen::Quaterniond& q) {
+  return 4.0 * rotationPlus(q).transpose();
+}
 
 }  // namespace lintel

@@ -23,9 +23,11 @@ struct VanishingLinearisation {
 ///
 /// It knows rotations only: no distance is guessed that would claim to know translations. `weight` = 1 / sigma of the
 /// angle between plane and direction. Blocks: pose (T_w_b), extrinsics (T_b_c), correction, direction.
-class VanishingFactor final : public ceres::SizedCostFunction<1, kPoseSize, kPoseSize, kCorrectionSize, kDirectionSize> {
+class VanishingFactor final
+    : public ceres::SizedCostFunction<1, kPoseSize, kPoseSize, kCorrectionSize, kDirectionSize> {
  public:
-  VanishingFactor(const NormalisedObservation& start, const NormalisedObservation& end, const FrameMotion& motion, double weight)
+  VanishingFactor(const NormalisedObservation& start, const NormalisedObservation& end, const FrameMotion& motion,
+                  double weight)
       : start_(start), end_(end), motion_(motion), weight_(weight) {}
   bool Evaluate(double const* const* parameters, double* residuals, double** jacobians) const override;
 

@@ -15,7 +15,8 @@ struct PinholeRadtan {
   /// Distorts normalised image coordinates (x/z, y/z).
   Eigen::Vector2d distort(const Eigen::Vector2d& normalised) const;
 
-  /// Inverse of distort by Newton iterations to 1e-12; diverging inputs (far outside the image) return the last iterate.
+  /// Inverse of distort by Newton iterations to 1e-12; diverging inputs (far outside the image) return the last
+  /// iterate.
   Eigen::Vector2d undistort(const Eigen::Vector2d& distorted) const;
 
   /// A point in the camera frame [m] with z > 0 to distorted pixels.
@@ -32,7 +33,8 @@ struct PinholeRadtan {
 
   double meanFocal() const { return 0.5 * (fx + fy); }
   bool contains(const Eigen::Vector2d& px, double border_px = 0) const {
-    return px.x() >= border_px && px.y() >= border_px && px.x() <= width - 1 - border_px && px.y() <= height - 1 - border_px;
+    return px.x() >= border_px && px.y() >= border_px && px.x() <= width - 1 - border_px &&
+           px.y() <= height - 1 - border_px;
   }
 };
 

@@ -14,23 +14,23 @@ namespace lintel {
 /// The batch adjustment after the causal pass.
 struct RefinementParams {
   bool enabled = true;
-  int rounds = 5;              ///< of: estimate and merge landmarks, adjust, reject outliers
-  int max_iterations = 12;     ///< of a round
-  bool lines = true;           ///< lines have residuals too; off: they follow the poses
-  bool groups = true;          ///< lines of a parallel group share a direction, as far as the group is parallel
+  int rounds = 5;           ///< of: estimate and merge landmarks, adjust, reject outliers
+  int max_iterations = 12;  ///< of a round
+  bool lines = true;        ///< lines have residuals too; off: they follow the poses
+  bool groups = true;       ///< lines of a parallel group share a direction, as far as the group is parallel
   /// Standard deviations of points and lines against the window's, which are larger than its residuals because what it
   /// marginalises is never linearised again.
   double sigma_scale = 0.5;
-  int min_views = 3;           ///< keyframes that see a landmark of the adjustment
-  int max_views = 60;          ///< of a landmark that have residuals, spread over all it has; 0: all
+  int min_views = 3;                           ///< keyframes that see a landmark of the adjustment
+  int max_views = 60;                          ///< of a landmark that have residuals, spread over all it has; 0: all
   double line_max_sigma_direction_rad = 0.10;  ///< vaguer lines have no residuals
   double line_max_relative_sigma = 0.10;       ///< of their distance
   double held_out_share = 0.05;                ///< of the points: left out, to judge the result by
   // acceptance
-  double max_moved_share = 0.05;   ///< keyframes may move by this share of the way travelled, and
-  double max_moved_m = 0.30;       ///< this much more
+  double max_moved_share = 0.05;  ///< keyframes may move by this share of the way travelled, and
+  double max_moved_m = 0.30;      ///< this much more
   double max_turned_rad = 0.15;
-  double max_imu_error = 3.0;      ///< RMS of the IMU's residuals in standard deviations; or no worse than before
+  double max_imu_error = 3.0;  ///< RMS of the IMU's residuals in standard deviations; or no worse than before
 
   template <class F>
   void fields(F&& field) {
@@ -58,24 +58,25 @@ struct RefinementReport {
   std::string verdict;  ///< in words: why, or why not
   int rounds = 0, iterations = 0, merged = 0;
   std::size_t residuals = 0, points = 0, lines = 0;
-  double cost_before = 0, cost_after = 0;                        ///< robust, of the last adjustment's residuals
-  double held_out_before_px = 0, held_out_after_px = 0;          ///< median error of points that had no part in it
-  double imu_before = 0, imu_after = 0;                          ///< RMS, standard deviations
-  double moved_m = 0, turned_rad = 0;                            ///< most, of a keyframe
+  double cost_before = 0, cost_after = 0;                ///< robust, of the last adjustment's residuals
+  double held_out_before_px = 0, held_out_after_px = 0;  ///< median error of points that had no part in it
+  double imu_before = 0, imu_after = 0;                  ///< RMS, standard deviations
+  double moved_m = 0, turned_rad = 0;                    ///< most, of a keyframe
 };
 
 /// Told from time to time how much is done, in [0, 1].
 using RefinementProgress = std::function<void(double)>;
 
-/// Full adjustment over all keyframes: poses, velocities, biases, calibration, points and lines; IMU between consecutive
-/// keyframes; robust losses. Landmarks that turn out to be the same are joined between the rounds: what was seen again
-/// ties the trajectory together. Deterministic; one thread.
+/// Full adjustment over all keyframes: poses, velocities, biases, calibration, points and lines; IMU between
+/// consecutive keyframes; robust losses. Landmarks that turn out to be the same are joined between the rounds: what was
+/// seen again ties the trajectory together. Deterministic; one thread.
 ///
 /// The result is checked (report.accepted): cost, points that had no part in the adjustment, IMU residuals, plausible
 /// changes. Whoever calls keeps what was before when it is not accepted.
 class BatchRefinement {
  public:
-  /// Throws std::invalid_argument, naming the parameter, when one is out of range. `calibrated`: the rig as calibrated, before any estimate; its priors hold the calibration.
+  /// Throws std::invalid_argument, naming the parameter, when one is out of range. `calibrated`: the rig as calibrated,
+  /// before any estimate; its priors hold the calibration.
   BatchRefinement(const Rig& calibrated, const EstimatorParams& estimator, const MapParams& map,
                   const RefinementParams& params);
 

@@ -45,9 +45,9 @@ struct MapLineObservation {
 /// A finite 3D line segment with its uncertainty and provenance.
 struct MapLine {
   std::uint64_t id = 0;
-  Segment3 segment_w;                            ///< ends in the world [m]
-  double sigma_direction_rad = 0;                ///< standard deviation of the direction in its worst plane
-  double sigma_distance_m = 0;                   ///< standard deviation of the position, worst way across the line
+  Segment3 segment_w;              ///< ends in the world [m]
+  double sigma_direction_rad = 0;  ///< standard deviation of the direction in its worst plane
+  double sigma_distance_m = 0;     ///< standard deviation of the position, worst way across the line
   std::int64_t first_t_ns = 0, last_t_ns = 0;
   bool degenerate = false;                       ///< its own observations leave the direction or depth open
   bool constrained = false;                      ///< direction taken from a group of parallel lines
@@ -64,13 +64,13 @@ struct MapGroup {
 
 /// The product: keyframes, points and line segments in one world frame (z up).
 struct LineMap {
-  Rig rig;                              ///< calibration in use at the end
-  std::string configuration;            ///< effective configuration, YAML text
-  std::string source;                   ///< name of the recording
-  std::vector<MapKeyframe> keyframes;   ///< ascending id
-  std::vector<MapPoint> points;         ///< ascending id
-  std::vector<MapLine> lines;           ///< ascending id
-  std::vector<MapGroup> groups;         ///< of parallel lines, the longest in sum first
+  Rig rig;                                                ///< calibration in use at the end
+  std::string configuration;                              ///< effective configuration, YAML text
+  std::string source;                                     ///< name of the recording
+  std::vector<MapKeyframe> keyframes;                     ///< ascending id
+  std::vector<MapPoint> points;                           ///< ascending id
+  std::vector<MapLine> lines;                             ///< ascending id
+  std::vector<MapGroup> groups;                           ///< of parallel lines, the longest in sum first
   std::vector<std::pair<std::int64_t, Pose>> trajectory;  ///< (t_ns, T_w_b) of every frame, ascending
 };
 

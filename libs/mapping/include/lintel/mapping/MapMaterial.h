@@ -58,7 +58,7 @@ struct PointOnLine {
 struct LineTie {
   Eigen::Vector3d direction_w = Eigen::Vector3d::UnitX();  ///< unit, shared with others; the sign means nothing
   double sigma_rad = 0;                                    ///< how parallel the lines are
-  std::vector<PointOnLine> points;                          ///< that lie on it
+  std::vector<PointOnLine> points;                         ///< that lie on it
 };
 
 /// A line and all its views.
@@ -66,9 +66,9 @@ struct LineRecord {
   TrackId id = 0;
   bool known = false;  ///< `estimate` is one
   LineEstimate estimate;
-  double error_px = 0;    ///< mean distance of the inliers' ends from the projected line
-  double distance_m = 0;  ///< from which it was seen, median
-  bool parallel = false;  ///< the window found it parallel to others to the end
+  double error_px = 0;         ///< mean distance of the inliers' ends from the projected line
+  double distance_m = 0;       ///< from which it was seen, median
+  bool parallel = false;       ///< the window found it parallel to others to the end
   std::optional<LineTie> tie;  ///< where its own views leave the direction or place open
   std::vector<LineView> views;
 };
@@ -76,8 +76,8 @@ struct LineRecord {
 /// What a run leaves behind for the map: all keyframes, points and lines with their views, and the causal trajectory.
 /// Grows with what was seen, not with the number of frames.
 struct MapMaterial {
-  Rig rig;                  ///< calibration that the poses belong to
-  double time_offset_s = 0; ///< an image with stamp t shows the world at t + offset
+  Rig rig;                                 ///< calibration that the poses belong to
+  double time_offset_s = 0;                ///< an image with stamp t shows the world at t + offset
   std::vector<RetiredKeyframe> keyframes;  ///< ascending id and time
   std::vector<PointRecord> points;
   std::vector<LineRecord> lines;

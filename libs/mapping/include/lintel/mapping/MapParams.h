@@ -51,7 +51,7 @@ struct SpacingParams {
 struct GroupParams {
   double max_angle_rad = 0.05;  ///< of a member from the group's direction
   int min_lines = 5;
-  double min_share = 0.03;      ///< of the map's length
+  double min_share = 0.03;  ///< of the map's length
 
   template <class F>
   void fields(F&& field) {
@@ -63,17 +63,17 @@ struct GroupParams {
 
 /// What becomes part of the map.
 struct MapParams {
-  int min_observations = 3;           ///< keyframes that saw a point or line
-  double min_length_m = 0.05;         ///< of a segment
-  double min_depth_m = 0.1;           ///< nearer things are none
-  double max_error_px = 1.5;          ///< mean distance of the views from the projected line
-  double view_max_error_px = 3.0;     ///< a view farther off is an outlier
-  double min_inlier_share = 0.6;      ///< of a line's views
+  int min_observations = 3;        ///< keyframes that saw a point or line
+  double min_length_m = 0.05;      ///< of a segment
+  double min_depth_m = 0.1;        ///< nearer things are none
+  double max_error_px = 1.5;       ///< mean distance of the views from the projected line
+  double view_max_error_px = 3.0;  ///< a view farther off is an outlier
+  double min_inlier_share = 0.6;   ///< of a line's views
   double max_sigma_direction_rad = 0.10;
-  double max_sigma_m = 0.03;          ///< of a segment's ends, across it, and
-  double max_relative_sigma = 0.02;   ///< the same relative to the distance it was seen from
+  double max_sigma_m = 0.03;         ///< of a segment's ends, across it, and
+  double max_relative_sigma = 0.02;  ///< the same relative to the distance it was seen from
   double point_max_relative_sigma = 0.20;
-  double coverage = 0.2;              ///< a piece of a line is drawn when this share of a track's views (and two) saw it
+  double coverage = 0.2;  ///< a piece of a line is drawn when this share of a track's views (and two) saw it
   MergeParams merge;
   GroupParams groups;
   SpacingParams spacing;

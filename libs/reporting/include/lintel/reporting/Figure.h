@@ -46,7 +46,7 @@ struct Figure {
   std::vector<Curve> curves{};
   std::vector<BoxSeries> boxes{};
   std::vector<std::string> x_names{};  ///< instead of numbers at x = 0, 1, 2, …
-  bool equal_axes = false;           ///< a metre is as long across as up
+  bool equal_axes = false;             ///< a metre is as long across as up
   bool log_y = false, from_zero = false;
   int width_px = 720, height_px = 360;
 };

@@ -11,8 +11,8 @@
 namespace lintel {
 
 /// The true poses (time [ns], T_w_b) that a recording carries, times ascending: of an EuRoC folder
-/// `state_groundtruth_estimate0/data.csv`, of a rawlog its robot poses labelled "groundtruth". Empty when there are none.
-/// A rawlog is read to its end, or to where it is damaged. Throws RecordingError when it cannot be opened.
+/// `state_groundtruth_estimate0/data.csv`, of a rawlog its robot poses labelled "groundtruth". Empty when there are
+/// none. A rawlog is read to its end, or to where it is damaged. Throws RecordingError when it cannot be opened.
 std::vector<std::pair<std::int64_t, Pose>> readGroundTruth(const std::string& recording);
 
 }  // namespace lintel

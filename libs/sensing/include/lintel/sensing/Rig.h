@@ -8,16 +8,16 @@ namespace lintel {
 
 /// Continuous-time noise densities of an IMU, as in EuRoC's sensor.yaml.
 struct ImuNoise {
-  double gyro_noise = 1.6968e-4;   ///< [rad/s/sqrt(Hz)]
-  double gyro_walk = 1.9393e-5;    ///< [rad/s^2/sqrt(Hz)]
-  double accel_noise = 2.0e-3;     ///< [m/s^2/sqrt(Hz)]
-  double accel_walk = 3.0e-3;      ///< [m/s^3/sqrt(Hz)]
+  double gyro_noise = 1.6968e-4;  ///< [rad/s/sqrt(Hz)]
+  double gyro_walk = 1.9393e-5;   ///< [rad/s^2/sqrt(Hz)]
+  double accel_noise = 2.0e-3;    ///< [m/s^2/sqrt(Hz)]
+  double accel_walk = 3.0e-3;     ///< [m/s^3/sqrt(Hz)]
 };
 
 /// Calibration of the sensors that Lintel uses: one camera and one IMU. The body frame is the IMU's.
 struct Rig {
   PinholeRadtan camera;
-  Pose T_b_c;             ///< camera in the body (IMU) frame
+  Pose T_b_c;  ///< camera in the body (IMU) frame
   double camera_rate_hz = 20;
   ImuNoise imu_noise;
   double imu_rate_hz = 200;

@@ -7,7 +7,8 @@
 
 namespace lintel {
 
-/// How far points are from the surfaces of a scene, e.g. from `mav0/scene0/scene.ply`. May be used from several threads.
+/// How far points are from the surfaces of a scene, e.g. from `mav0/scene0/scene.ply`. May be used from several
+/// threads.
 class SurfaceDistance {
  public:
   /// Reads a mesh (PLY and what else assimp knows). Throws std::runtime_error naming the file.

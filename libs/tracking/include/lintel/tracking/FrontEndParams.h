@@ -27,11 +27,11 @@ struct PointTrackerParams {
   int detect_every_n = 2;       ///< frames between searches for new corners; 2 = the estimator's rate at 20 Hz images
   int window_px = 13;           ///< side of the KLT patch
   int max_iterations = 20;      ///< of KLT, per level
-  double forward_backward_px = 0.5;      ///< largest return error of a track followed back, where its patch was not found
-  double epipolar_px = 1.0;              ///< largest distance from the epipolar line between consecutive frames
-  double drift_px = 1.5;                 ///< largest distance from the epipolar line over drift_frames
-  int drift_frames = 10;                 ///< baseline of the check against slow drift [frames]
-  int border_px = 4;                     ///< points nearer to the image border are dropped
+  double forward_backward_px = 0.5;  ///< largest return error of a track followed back, where its patch was not found
+  double epipolar_px = 1.0;          ///< largest distance from the epipolar line between consecutive frames
+  double drift_px = 1.5;             ///< largest distance from the epipolar line over drift_frames
+  int drift_frames = 10;             ///< baseline of the check against slow drift [frames]
+  int border_px = 4;                 ///< points nearer to the image border are dropped
   double initial_gyro_bias_sigma = 0.1;  ///< how wrong the gyro may be at the start [rad/s]
 
   template <class F>
