@@ -42,8 +42,12 @@ function(lintel_room NAME)
     add_executable(${NAME}_tests ${ARG_TESTS})
     lintel_warnings(${NAME}_tests)
     target_include_directories(${NAME}_tests PRIVATE ${CMAKE_CURRENT_SOURCE_DIR}/src ${CMAKE_CURRENT_SOURCE_DIR}/tests)
-    target_link_libraries(${NAME}_tests PRIVATE lintel::${NAME} ${ARG_TEST_LINKS} GTest::gtest GTest::gmock GTest::gtest_main)
+    target_link_libraries(${NAME}_tests PRIVATE lintel::${NAME} lintel_testing ${ARG_TEST_LINKS} GTest::gtest GTest::gmock GTest::gtest_main)
     gtest_discover_tests(${NAME}_tests DISCOVERY_MODE PRE_TEST TEST_PREFIX ${NAME}. PROPERTIES LABELS unit TIMEOUT 300)
   endif()
 endfunction()
+
+# What the tests of several rooms need: lintel/testing/TempFolder.h.
+add_library(lintel_testing INTERFACE)
+target_include_directories(lintel_testing INTERFACE ${CMAKE_CURRENT_LIST_DIR}/core/testing)
 include(GoogleTest)

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "TrueEdges.h"
-#include "lintel/tracking/FrameTracks.h"
+#include "lintel/core/FrameTracks.h"
 
 namespace lintel::truth {
 

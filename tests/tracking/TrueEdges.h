@@ -7,9 +7,9 @@
 #include <string>
 #include <vector>
 
+#include "lintel/core/Rig.h"
 #include "lintel/geometry/PinholeRadtan.h"
 #include "lintel/geometry/Pose.h"
-#include "lintel/sensing/Rig.h"
 
 namespace lintel::truth {
 

@@ -4,22 +4,22 @@
 #include <algorithm>
 #include <cmath>
 
-#include "AdaptiveWeights.h"
-#include "FailureDetection.h"
-#include "Initializer.h"
-#include "KeyframeSelection.h"
-#include "LineDegeneracy.h"
-#include "LineTriangulation.h"
-#include "OutlierRejection.h"
-#include "ParallelGroups.h"
 #include "ParamsCheck.h"
-#include "PointTriangulation.h"
-#include "WindowMarginalization.h"
-#include "WindowRetirement.h"
-#include "WindowSigma.h"
-#include "WindowSolver.h"
+#include "initialisation/Initializer.h"
+#include "landmarks/LineDegeneracy.h"
+#include "landmarks/LineTriangulation.h"
+#include "landmarks/ParallelGroups.h"
+#include "landmarks/PointTriangulation.h"
 #include "lintel/geometry/Frames.h"
 #include "lintel/geometry/Rotation.h"
+#include "solver/WindowSolver.h"
+#include "window/AdaptiveWeights.h"
+#include "window/FailureDetection.h"
+#include "window/KeyframeSelection.h"
+#include "window/OutlierRejection.h"
+#include "window/WindowMarginalization.h"
+#include "window/WindowRetirement.h"
+#include "window/WindowSigma.h"
 
 namespace lintel {
 

@@ -4,7 +4,7 @@
 #include <set>
 #include <vector>
 
-#include "ReducedSystem.h"
+#include "solver/ReducedSystem.h"
 
 namespace lintel::test {
 

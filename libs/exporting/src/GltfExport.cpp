@@ -5,7 +5,7 @@
 
 #include "AssimpScene.h"
 #include "Writers.h"
-#include "lintel/reporting/Base64.h"
+#include "lintel/core/Base64.h"
 
 // glTF 2 by assimp, then what assimp cannot say: which data belongs to each line (extras), unlit strokes.
 namespace lintel {

@@ -7,7 +7,7 @@
 
 #include "ViewerPage.h"
 #include "Writers.h"
-#include "lintel/reporting/Base64.h"
+#include "lintel/core/Base64.h"
 
 // One page that needs no network: page/viewer.html with three.js and the map put into it.
 namespace lintel {

@@ -8,7 +8,7 @@
 #include <memory>
 
 #include "Writers.h"
-#include "lintel/mapping/AtomicFile.h"
+#include "lintel/core/AtomicFile.h"
 
 namespace lintel {
 

@@ -13,8 +13,8 @@
 #include "Files.h"
 #include "SampleMap.h"
 #include "ViewerPage.h"
+#include "lintel/core/ChildProcess.h"
 #include "lintel/exporting/MapExport.h"
-#include "lintel/reporting/ChildProcess.h"
 
 namespace lintel {
 namespace {

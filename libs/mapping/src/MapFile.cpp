@@ -11,7 +11,7 @@
 #include <sstream>
 
 #include "MapSections.h"
-#include "lintel/mapping/AtomicFile.h"
+#include "lintel/core/AtomicFile.h"
 
 // The file, little endian throughout:
 //   8 bytes  mark, u32 version

@@ -10,7 +10,7 @@
 #include <string>
 
 #include "ProgramMain.h"
-#include "Progress.h"
+#include "lintel/reporting/Progress.h"
 #include "lintel/sensing/EurocToRawlog.h"
 
 namespace lintel {

@@ -14,13 +14,13 @@
 #include <ostream>
 #include <thread>
 
-#include "BenchPage.h"
-#include "BenchRunner.h"
-#include "BenchTables.h"
 #include "ProgramMain.h"
-#include "Progress.h"
-#include "lintel/mapping/AtomicFile.h"
-#include "lintel/reporting/ChildProcess.h"
+#include "lintel/bench/BenchPage.h"
+#include "lintel/bench/BenchRunner.h"
+#include "lintel/bench/BenchTables.h"
+#include "lintel/core/AtomicFile.h"
+#include "lintel/core/ChildProcess.h"
+#include "lintel/reporting/Progress.h"
 
 namespace lintel {
 

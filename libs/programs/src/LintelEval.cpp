@@ -10,13 +10,13 @@
 #include <ostream>
 #include <string>
 
-#include "EvalReport.h"
 #include "ProgramMain.h"
+#include "lintel/core/AtomicFile.h"
 #include "lintel/evaluation/LineErrors.h"
 #include "lintel/evaluation/Output.h"
 #include "lintel/evaluation/TrajectoryErrors.h"
-#include "lintel/mapping/AtomicFile.h"
 #include "lintel/mapping/MapFile.h"
+#include "lintel/pages/EvalReport.h"
 #include "lintel/sensing/GroundTruth.h"
 #include "lintel/simulation/SurfaceDistance.h"
 

@@ -11,7 +11,7 @@
 #include <thread>
 
 #include "ProgramMain.h"
-#include "Progress.h"
+#include "lintel/reporting/Progress.h"
 #include "lintel/simulation/Simulation.h"
 
 namespace lintel {

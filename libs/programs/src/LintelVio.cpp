@@ -15,15 +15,15 @@
 #include <ostream>
 #include <stdexcept>
 
-#include "Configuration.h"
-#include "Odometry.h"
 #include "ProgramMain.h"
-#include "Progress.h"
-#include "RunReport.h"
-#include "VioOutput.h"
+#include "lintel/core/AtomicFile.h"
 #include "lintel/exporting/MapExport.h"
-#include "lintel/mapping/AtomicFile.h"
 #include "lintel/mapping/MapFile.h"
+#include "lintel/pages/RunReport.h"
+#include "lintel/pipeline/Configuration.h"
+#include "lintel/pipeline/Odometry.h"
+#include "lintel/pipeline/VioOutput.h"
+#include "lintel/reporting/Progress.h"
 #include "lintel/sensing/GroundTruth.h"
 #include "lintel/tracking/TrackDrawing.h"
 

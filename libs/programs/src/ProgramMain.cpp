@@ -9,6 +9,8 @@
 #include <new>
 #include <ostream>
 
+#include "lintel/core/Version.h"
+
 namespace lintel {
 
 namespace {
@@ -38,7 +40,7 @@ int programMain(const std::string& name, std::ostream& err, const std::function<
 
 std::optional<int> parseArguments(CLI::App& app, int argc, const char* const* argv, std::ostream& out,
                                   std::ostream& err) {
-  app.set_version_flag("--version", app.get_name() + " " + LINTEL_VERSION, "Print the version and exit");
+  app.set_version_flag("--version", app.get_name() + " " + version(), "Print the version and exit");
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {

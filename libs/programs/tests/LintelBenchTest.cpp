@@ -10,7 +10,7 @@
 #include <nlohmann/json.hpp>
 #include <sstream>
 
-#include "TempFolder.h"
+#include "lintel/testing/TempFolder.h"
 
 namespace lintel {
 namespace {

@@ -9,6 +9,8 @@
 #include <new>
 #include <sstream>
 
+#include "lintel/core/Version.h"
+
 namespace lintel {
 namespace {
 
@@ -51,7 +53,7 @@ TEST_F(ParseArguments, HelpAndVersionGoToOut) {
   EXPECT_THAT(out_.str(), HasSubstr("--number"));
   out_.str("");
   EXPECT_EQ(parse("--version"), 0);
-  EXPECT_EQ(out_.str(), "prog " LINTEL_VERSION "\n");
+  EXPECT_EQ(out_.str(), std::string("prog ") + version() + "\n");
   EXPECT_EQ(err_.str(), "");
 }
 

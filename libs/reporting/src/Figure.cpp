@@ -5,7 +5,7 @@
 #include <cmath>
 #include <cstdio>
 
-#include "lintel/reporting/ChildProcess.h"
+#include "lintel/core/ChildProcess.h"
 
 namespace lintel {
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "lintel/reporting/HtmlPage.h"
 
-#include "lintel/reporting/Base64.h"
+#include "lintel/core/Base64.h"
 
 namespace lintel {
 

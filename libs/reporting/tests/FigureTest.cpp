@@ -6,7 +6,7 @@
 #include <cmath>
 #include <limits>
 
-#include "lintel/reporting/ChildProcess.h"
+#include "lintel/core/ChildProcess.h"
 
 namespace lintel {
 namespace {

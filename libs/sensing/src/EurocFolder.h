@@ -6,7 +6,7 @@
 
 #include "CsvReader.h"
 #include "SampleGate.h"
-#include "lintel/sensing/Frame.h"
+#include "lintel/core/Frame.h"
 
 namespace lintel {
 

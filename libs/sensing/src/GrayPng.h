@@ -5,7 +5,7 @@
 #include <optional>
 #include <vector>
 
-#include "lintel/sensing/Frame.h"
+#include "lintel/core/Frame.h"
 
 namespace lintel {
 

@@ -3,7 +3,7 @@
 
 #include <string>
 
-#include "lintel/sensing/Frame.h"
+#include "lintel/core/Frame.h"
 
 namespace lintel {
 

@@ -6,7 +6,7 @@
 #include <functional>
 #include <optional>
 
-#include "lintel/sensing/Frame.h"
+#include "lintel/core/Frame.h"
 
 namespace lintel {
 

@@ -4,7 +4,7 @@
 #include <string>
 
 #include "SensorStream.h"
-#include "lintel/sensing/Frame.h"
+#include "lintel/core/Frame.h"
 
 namespace mrpt::obs {
 class CObservationImage;

@@ -5,7 +5,7 @@
 #include <optional>
 #include <string>
 
-#include "lintel/sensing/Rig.h"
+#include "lintel/core/Rig.h"
 
 namespace lintel {
 

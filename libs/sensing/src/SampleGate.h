@@ -7,7 +7,7 @@
 #include <string>
 
 #include "Warnings.h"
-#include "lintel/sensing/Frame.h"
+#include "lintel/core/Frame.h"
 
 namespace lintel {
 

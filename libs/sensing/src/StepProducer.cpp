@@ -5,7 +5,7 @@
 #include <limits>
 
 #include "TimeTicks.h"
-#include "lintel/sensing/ThreadTime.h"
+#include "lintel/core/ThreadTime.h"
 
 namespace lintel {
 

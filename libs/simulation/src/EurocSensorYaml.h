@@ -3,7 +3,7 @@
 
 #include <string>
 
-#include "lintel/sensing/Rig.h"
+#include "lintel/core/Rig.h"
 
 namespace lintel {
 

@@ -5,7 +5,7 @@
 #include <map>
 #include <vector>
 
-#include "lintel/tracking/FrameTracks.h"
+#include "lintel/core/FrameTracks.h"
 
 namespace lintel {
 

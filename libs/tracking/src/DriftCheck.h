@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "TwoViewMotion.h"
-#include "lintel/tracking/FrameTracks.h"
+#include "lintel/core/FrameTracks.h"
 
 namespace lintel {
 

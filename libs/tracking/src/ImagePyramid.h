@@ -6,7 +6,7 @@
 #include <opencv2/imgproc.hpp>
 #include <vector>
 
-#include "lintel/sensing/Frame.h"
+#include "lintel/core/Frame.h"
 #include "lintel/tracking/FrontEndParams.h"
 
 namespace lintel {

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "ImageLine.h"
-#include "lintel/tracking/FrameTracks.h"
+#include "lintel/core/FrameTracks.h"
 
 namespace lintel {
 

@@ -7,7 +7,7 @@
 #include "GyroPrediction.h"
 #include "ImagePyramid.h"
 #include "PointTracker.h"
-#include "lintel/tracking/FrameTracks.h"
+#include "lintel/core/FrameTracks.h"
 #include "lintel/tracking/FrontEndParams.h"
 #include "lintel/tracking/FrontEndStatistics.h"
 

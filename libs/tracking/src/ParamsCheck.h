@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "lintel/sensing/Frame.h"
-#include "lintel/sensing/Rig.h"
+#include "lintel/core/Frame.h"
+#include "lintel/core/Rig.h"
 #include "lintel/tracking/FrontEndParams.h"
 
 namespace lintel {

@@ -5,7 +5,7 @@
 #include <map>
 #include <opencv2/core.hpp>
 
-#include "lintel/tracking/FrameTracks.h"
+#include "lintel/core/FrameTracks.h"
 
 namespace lintel {
 

@@ -14,8 +14,8 @@
 #include "PatchFlow.h"
 #include "StepTranslation.h"
 #include "TwoViewMotion.h"
-#include "lintel/sensing/Rig.h"
-#include "lintel/tracking/FrameTracks.h"
+#include "lintel/core/FrameTracks.h"
+#include "lintel/core/Rig.h"
 #include "lintel/tracking/FrontEndParams.h"
 #include "lintel/tracking/FrontEndStatistics.h"
 

@@ -3,7 +3,7 @@
 
 #include <string>
 
-#include "lintel/sensing/ThreadTime.h"
+#include "lintel/core/ThreadTime.h"
 #include "lintel/tracking/FrontEndStatistics.h"
 
 namespace lintel {

@@ -7,7 +7,7 @@
 #include <optional>
 #include <vector>
 
-#include "lintel/tracking/FrameTracks.h"
+#include "lintel/core/FrameTracks.h"
 
 namespace lintel {
 

@@ -9,8 +9,8 @@
 #include <optional>
 #include <vector>
 
-#include "lintel/sensing/Frame.h"
-#include "lintel/sensing/Rig.h"
+#include "lintel/core/Frame.h"
+#include "lintel/core/Rig.h"
 
 namespace lintel::testing {
 

@@ -5,11 +5,11 @@
 #include <memory>
 #include <optional>
 
+#include "lintel/core/Frame.h"
+#include "lintel/core/FrameTracks.h"
+#include "lintel/core/Rig.h"
 #include "lintel/estimator/EstimatorParams.h"
 #include "lintel/estimator/WindowUpdate.h"
-#include "lintel/sensing/Frame.h"
-#include "lintel/sensing/Rig.h"
-#include "lintel/tracking/FrameTracks.h"
 
 namespace lintel {
 
@@ -40,7 +40,7 @@ class Estimator {
   Estimator(Estimator&&) noexcept;
   Estimator& operator=(Estimator&&) noexcept;
 
-  /// One frame's tracks and the IMU since the frame before (both ends included, see sensing/Frame.h).
+  /// One frame's tracks and the IMU since the frame before (both ends included, see core/Frame.h).
   WindowUpdate process(const FrameTracks& tracks, const ImuBatch& imu);
 
   /// Retires everything that is still in the window. The estimator starts anew with the next frame.

@@ -9,13 +9,13 @@
 #include <optional>
 #include <vector>
 
+#include "lintel/core/FrameTracks.h"
+#include "lintel/core/Rig.h"
 #include "lintel/factors/FrameMotion.h"
 #include "lintel/factors/LineFactor.h"
 #include "lintel/factors/PriorFactors.h"
 #include "lintel/factors/StateBlocks.h"
 #include "lintel/inertial/Preintegration.h"
-#include "lintel/sensing/Rig.h"
-#include "lintel/tracking/FrameTracks.h"
 
 namespace lintel {
 

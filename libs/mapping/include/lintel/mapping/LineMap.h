@@ -6,9 +6,9 @@
 #include <string>
 #include <vector>
 
+#include "lintel/core/Rig.h"
 #include "lintel/geometry/Pose.h"
 #include "lintel/geometry/Segment.h"
-#include "lintel/sensing/Rig.h"
 
 namespace lintel {
 

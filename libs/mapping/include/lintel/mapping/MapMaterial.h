@@ -7,8 +7,8 @@
 #include <utility>
 #include <vector>
 
+#include "lintel/core/Rig.h"
 #include "lintel/estimator/WindowUpdate.h"
-#include "lintel/sensing/Rig.h"
 
 namespace lintel {
 

@@ -8,8 +8,8 @@
 #include <string>
 #include <vector>
 
-#include "lintel/sensing/Frame.h"
-#include "lintel/sensing/Rig.h"
+#include "lintel/core/Frame.h"
+#include "lintel/core/Rig.h"
 
 namespace lintel {
 

@@ -3,7 +3,7 @@
 
 #include <cstdint>
 
-#include "lintel/sensing/Frame.h"
+#include "lintel/core/Frame.h"
 #include "lintel/simulation/ImageRenderer.h"
 #include "lintel/simulation/Trajectory.h"
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "lintel/sensing/Rig.h"
+#include "lintel/core/Rig.h"
 
 namespace lintel {
 

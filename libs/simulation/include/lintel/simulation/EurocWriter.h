@@ -5,8 +5,8 @@
 #include <filesystem>
 #include <vector>
 
-#include "lintel/sensing/Frame.h"
-#include "lintel/sensing/Rig.h"
+#include "lintel/core/Frame.h"
+#include "lintel/core/Rig.h"
 #include "lintel/simulation/ImuSimulator.h"
 #include "lintel/simulation/Scene.h"
 

@@ -4,8 +4,8 @@
 #include <cstdint>
 #include <vector>
 
-#include "lintel/sensing/Frame.h"
-#include "lintel/sensing/Rig.h"
+#include "lintel/core/Frame.h"
+#include "lintel/core/Rig.h"
 #include "lintel/simulation/Trajectory.h"
 
 namespace lintel {

@@ -6,7 +6,7 @@
 #include <memory>
 #include <string>
 
-#include "lintel/sensing/Rig.h"
+#include "lintel/core/Rig.h"
 #include "lintel/simulation/CameraSensor.h"
 #include "lintel/simulation/ImuSimulator.h"
 #include "lintel/simulation/SceneLibrary.h"

@@ -4,12 +4,12 @@
 #include <cstdint>
 #include <vector>
 
+#include "lintel/core/Frame.h"
+#include "lintel/core/FrameTracks.h"
+#include "lintel/core/Rig.h"
 #include "lintel/geometry/Segment.h"
-#include "lintel/sensing/Frame.h"
-#include "lintel/sensing/Rig.h"
 #include "lintel/simulation/ImuSimulator.h"
 #include "lintel/simulation/Trajectory.h"
-#include "lintel/tracking/FrameTracks.h"
 
 namespace lintel {
 

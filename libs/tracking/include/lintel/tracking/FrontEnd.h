@@ -4,9 +4,9 @@
 #include <Eigen/Core>
 #include <memory>
 
-#include "lintel/sensing/Frame.h"
-#include "lintel/sensing/Rig.h"
-#include "lintel/tracking/FrameTracks.h"
+#include "lintel/core/Frame.h"
+#include "lintel/core/FrameTracks.h"
+#include "lintel/core/Rig.h"
 #include "lintel/tracking/FrontEndParams.h"
 #include "lintel/tracking/FrontEndStatistics.h"
 
@@ -24,7 +24,7 @@ class FrontEnd {
   FrontEnd(FrontEnd&&) noexcept;
   FrontEnd& operator=(FrontEnd&&) noexcept;
 
-  /// Features of `frame`. `imu_since_last` covers the time from the previous frame to this one (sensing/Frame.h); when
+  /// Features of `frame`. `imu_since_last` covers the time from the previous frame to this one (core/Frame.h); when
   /// it is empty the last rotation rate is assumed to go on. Throws std::invalid_argument when the image does not have
   /// the rig's size, or the frame is not later than the one before.
   FrameTracks process(const Frame& frame, const ImuBatch& imu_since_last);

@@ -3,9 +3,9 @@
 
 #include <string>
 
-#include "lintel/sensing/Frame.h"
-#include "lintel/sensing/Rig.h"
-#include "lintel/tracking/FrameTracks.h"
+#include "lintel/core/Frame.h"
+#include "lintel/core/FrameTracks.h"
+#include "lintel/core/Rig.h"
 
 namespace lintel {
 

@@ -1,0 +1,265 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "initialisation/Initializer.h"
+
+#include <Eigen/Cholesky>
+#include <Eigen/Eigenvalues>
+#include <Eigen/LU>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "initialisation/GravityAlignment.h"
+#include "initialisation/GyroAlignment.h"
+#include "landmarks/PointTriangulation.h"
+#include "lintel/geometry/Frames.h"
+#include "lintel/geometry/Rotation.h"
+#include "solver/Marginalizer.h"
+#include "solver/WindowSolver.h"
+#include "window/OutlierRejection.h"
+
+namespace lintel {
+
+namespace {
+
+double median(std::vector<double>& values) {
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
+}
+
+/// Mean and standard deviation (norm over the axes) of the buffer's IMU.
+struct ImuStatistics {
+  Eigen::Vector3d mean_gyro = Eigen::Vector3d::Zero(), mean_accel = Eigen::Vector3d::Zero();
+  double std_gyro = 0, std_accel = 0;
+};
+
+ImuStatistics imuStatistics(const SlidingWindow& window) {
+  ImuStatistics s;
+  double n = 0;
+  const auto each = [&](auto&& f) {
+    for (const WindowFrame& frame : window.frames)
+      if (frame.imu)
+        for (const ImuSample& sample : frame.imu->samples()) f(sample);
+  };
+  each([&](const ImuSample& x) { s.mean_gyro += x.gyro, s.mean_accel += x.accel, n += 1; });
+  if (n < 2) return s;
+  s.mean_gyro /= n;
+  s.mean_accel /= n;
+  each([&](const ImuSample& x) {
+    s.std_gyro += (x.gyro - s.mean_gyro).squaredNorm();
+    s.std_accel += (x.accel - s.mean_accel).squaredNorm();
+  });
+  s.std_gyro = std::sqrt(s.std_gyro / n);
+  s.std_accel = std::sqrt(s.std_accel / n);
+  return s;
+}
+
+}  // namespace
+
+double medianDisparityPx(const SlidingWindow& window, std::size_t frame_a, std::size_t frame_b, bool rotation_free) {
+  const FrameId a = window.frames[frame_a].id, b = window.frames[frame_b].id;
+  Eigen::Quaterniond R_b0_b1 = Eigen::Quaterniond::Identity();  // 0 is frame_a, 1 is frame_b
+  for (std::size_t k = frame_a + 1; rotation_free && k <= frame_b; ++k)
+    R_b0_b1 = R_b0_b1 * window.frames[k].imu->deltaR();
+  const Eigen::Quaterniond R_b_c = window.T_b_c().q, R_c0_c1 = R_b_c.conjugate() * R_b0_b1 * R_b_c;
+  std::vector<double> disparities;
+  for (const auto& [id, track] : window.points) {
+    const PointSighting *in_a = nullptr, *in_b = nullptr;
+    for (const PointSighting& s : track.sightings) {
+      if (s.frame == a) in_a = &s;
+      if (s.frame == b) in_b = &s;
+    }
+    if (!in_a || !in_b) continue;
+    const Eigen::Vector3d turned = R_c0_c1 * in_b->observation.position.homogeneous();
+    if (turned.z() < 0.1) continue;
+    disparities.push_back((turned.head<2>() / turned.z() - in_a->observation.position).norm());
+  }
+  return disparities.size() < 10 ? -1 : median(disparities) * window.camera().meanFocal();
+}
+
+bool Initializer::atRest(const SlidingWindow& window) const {
+  const InitializerParams& p = params_.initializer;
+  const ImuStatistics imu = imuStatistics(window);
+  if (imu.std_gyro > p.static_gyro_std || imu.std_accel > p.static_accel_std) return false;
+  const double disparity = medianDisparityPx(window, 0, window.frames.size() - 1, false);
+  return disparity >= 0 && disparity < p.static_disparity_px;
+}
+
+std::string Initializer::initialise(SlidingWindow& window) const {
+  const auto n = static_cast<int>(window.frames.size());
+  if (n < params_.initializer.min_frames) return "collecting frames";
+  for (std::size_t k = 1; k < window.frames.size(); ++k)
+    if (!window.frames[k].imu || window.frames[k].imu->dt_s() <= 0) return "waiting for IMU samples between all frames";
+  return atRest(window) ? startStatic(window) : startMoving(window);
+}
+
+std::string Initializer::startStatic(SlidingWindow& window) const {
+  const ImuStatistics imu = imuStatistics(window);
+  // the accelerometer at rest shows the reaction to gravity: straight up
+  const Eigen::Quaterniond R_w_b = rotationBetween(imu.mean_accel, Eigen::Vector3d::UnitZ());
+  MotionBlock motion = MotionBlock::Zero();
+  motion.segment<3>(kBiasGyroAt) = imu.mean_gyro;
+  for (WindowFrame& frame : window.frames) {
+    frame.pose = toBlock(Pose{R_w_b, Eigen::Vector3d::Zero()});
+    frame.motion = motion;
+    frame.at_rest = true;
+    if (frame.imu) frame.imu->repropagate(biasOf(motion.data()));
+  }
+  levelAndCentre(window);
+  setBiasPrior(window, motion, 0.005, params_.rest_velocity_sigma);
+  return {};
+}
+
+std::string Initializer::startMoving(SlidingWindow& window) const {
+  const double parallax = medianDisparityPx(window, 0, window.frames.size() - 1, true);
+  const double half = medianDisparityPx(window, window.frames.size() / 2, window.frames.size() - 1, true);
+  if (std::max(parallax, half) < params_.initializer.min_parallax_px) return "waiting for parallax";
+
+  SlidingWindow trial = window;
+  for (WindowFrame& frame : trial.frames)
+    if (frame.imu) frame.imu = std::make_shared<Preintegration>(*frame.imu);
+  const GyroAlignment gyro = alignGyro(trial);
+  if (!gyro.ok) return "the gyroscope does not agree with the images";
+  MotionBlock motion = MotionBlock::Zero();
+  motion.segment<3>(kBiasGyroAt) = gyro.bias_gyro;
+  for (WindowFrame& frame : trial.frames)
+    if (frame.imu) frame.imu->repropagate({gyro.bias_gyro, Eigen::Vector3d::Zero()});
+  const GravityAlignment gravity = alignGravity(trial);
+  if (!gravity.ok) return "waiting for a motion that shows scale and gravity";
+
+  const Eigen::Quaterniond R_w_b0 = rotationBetween(gravity.g_b0, -Eigen::Vector3d::UnitZ());
+  const std::vector<Eigen::Quaterniond> R_b0_bk = integratedRotations(trial);
+  for (std::size_t k = 0; k < trial.frames.size(); ++k) {
+    trial.frames[k].pose = toBlock(Pose{(R_w_b0 * R_b0_bk[k]).normalized(), R_w_b0 * gravity.p_b0_bk[k]});
+    trial.frames[k].motion = motion;
+    trial.frames[k].motion.segment<3>(kVelocityAt) = R_w_b0 * gravity.v_b0_bk[k];
+  }
+  levelAndCentre(trial);
+  adjust(trial);
+  if (std::string problem = verify(trial); !problem.empty()) return problem;
+  window = std::move(trial);
+  return {};
+}
+
+void Initializer::adjust(SlidingWindow& window) const {
+  MotionBlock mean = MotionBlock::Zero();
+  mean.segment<3>(kBiasGyroAt) = window.frames.front().motion.segment<3>(kBiasGyroAt);
+  setBiasPrior(window, mean, params_.initializer.bias_gyro_sigma, std::numeric_limits<double>::infinity());
+  CalibrationParams frozen = params_.calibration;
+  frozen.refine_extrinsics = frozen.refine_camera = frozen.refine_time_offset = false;
+  LandmarkParams loose = params_.landmarks;
+  for (int round = 0; round < 3; ++round) {
+    loose.point_max_error_px = round == 0 ? 30 : round == 1 ? 8 : params_.landmarks.point_max_error_px;
+    triangulatePoints(window, loose, params_.factors.point_sigma_px);
+    WindowFactors factors(window, params_.factors);
+    factors.addPriors();
+    factors.addImu();
+    factors.addPoints();
+    factors.addGauge();
+    solveWindow(window, factors.factors(), frozen, {20});
+    loose.point_max_error_px = round == 0 ? 8 : params_.landmarks.point_max_error_px;
+    for (auto& [id, track] : window.points)
+      if (track.triangulated && reprojectionError(window, track) > loose.point_max_error_px) track.triangulated = false;
+    for (WindowFrame& frame : window.frames)
+      if (frame.imu) frame.imu->repropagate(biasOf(frame.motion.data()));
+  }
+}
+
+std::string Initializer::verify(SlidingWindow& window) const {
+  const InitializerParams& p = params_.initializer;
+  std::vector<double> errors;
+  int candidates = 0;
+  for (const auto& [id, track] : window.points) {
+    if (static_cast<int>(track.sightings.size()) < params_.landmarks.point_min_observations) continue;
+    ++candidates;
+    if (track.triangulated) errors.push_back(reprojectionError(window, track));
+  }
+  if (errors.size() < 20 || static_cast<double>(errors.size()) < 0.6 * candidates)
+    return "too few points agree with the motion";
+  if (median(errors) > p.max_error_px) return "the images do not agree with the motion";
+  if (biasOf(window.frames.back().motion.data()).accel.norm() > p.max_bias_accel)
+    return "the accelerometer bias of the start is implausible";
+  if (!(relativeScaleSigma(window) < p.max_scale_sigma)) return "waiting for a motion that shows the scale";
+  return {};
+}
+
+double Initializer::relativeScaleSigma(SlidingWindow& window) const {
+  WindowFactors factors(window, params_.factors);
+  factors.addPriors();
+  factors.addImu();
+  factors.addPoints();
+  factors.addGauge();
+  CalibrationParams frozen = params_.calibration;
+  frozen.extrinsic_rotation_sigma_rad = frozen.extrinsic_translation_sigma_m = 1e-6;
+  frozen.refine_camera = frozen.refine_time_offset = false;
+  factors.addCalibrationPriors(frozen, T_b_c_calibrated_);
+  std::set<BlockKey> landmarks;
+  for (const Factor& factor : factors.factors())
+    for (const BlockKey& key : factor.blocks)
+      if (key.kind == BlockKey::kPoint) landmarks.insert(key);
+  const auto prior = marginalise(window, factors.factors(), landmarks);
+  if (!prior) return std::numeric_limits<double>::infinity();
+
+  // Information of everything that stays; the sigma of the distance to the frame farthest from the first.
+  std::vector<const double*> blocks;
+  std::vector<RowMajorMatrix> jacobians;
+  std::vector<double*> pointers;
+  Eigen::Index total = 0, place = -1;
+  const WindowFrame* farthest = &window.frames.back();
+  for (const WindowFrame& f : window.frames)
+    if ((f.T_w_b().p - window.frames.front().T_w_b().p).norm() >
+        (farthest->T_w_b().p - window.frames.front().T_w_b().p).norm())
+      farthest = &f;
+  const int rows = prior->factor->num_residuals();
+  for (const BlockKey& key : prior->blocks) {
+    const auto manifold = manifoldOf(key.kind);
+    blocks.push_back(window.block(key));
+    jacobians.emplace_back(rows, manifold->AmbientSize());
+    if (key.kind == BlockKey::kPose && key.id == farthest->id) place = total;
+    total += manifold->TangentSize();
+  }
+  for (RowMajorMatrix& J : jacobians) pointers.push_back(J.data());
+  Eigen::VectorXd r(rows);
+  prior->factor->Evaluate(blocks.data(), r.data(), pointers.data());
+  Eigen::MatrixXd J(rows, total);
+  Eigen::Index at = 0;
+  for (std::size_t i = 0; i < blocks.size(); ++i) {
+    const auto manifold = manifoldOf(prior->blocks[i].kind);
+    RowMajorMatrix plus(manifold->AmbientSize(), manifold->TangentSize());
+    manifold->PlusJacobian(blocks[i], plus.data());
+    J.middleCols(at, manifold->TangentSize()) = jacobians[i] * plus;
+    at += manifold->TangentSize();
+  }
+  Eigen::MatrixXd H = J.transpose() * J;
+  H.diagonal().array() += 1e-9;
+  const Eigen::Vector3d displacement = farthest->T_w_b().p - window.frames.front().T_w_b().p;
+  const double distance = displacement.norm();
+  if (place < 0 || distance < 1e-6) return std::numeric_limits<double>::infinity();
+  Eigen::VectorXd direction = Eigen::VectorXd::Zero(total);
+  direction.segment<3>(place) = displacement / distance;
+  const double variance = direction.dot(H.ldlt().solve(direction));
+  return variance > 0 ? std::sqrt(variance) / distance : std::numeric_limits<double>::infinity();
+}
+
+void Initializer::setBiasPrior(SlidingWindow& window, const MotionBlock& mean, double gyro_sigma,
+                               double velocity_sigma) const {
+  Eigen::VectorXd sigma(kMotionSize);
+  sigma << Eigen::Vector3d::Constant(velocity_sigma), Eigen::Vector3d::Constant(gyro_sigma),
+      Eigen::Vector3d::Constant(params_.initializer.bias_accel_sigma);
+  WindowPrior prior;
+  prior.blocks = {{BlockKey::kMotion, window.frames.front().id}};
+  prior.factor = makeBlockPrior(manifoldOf(BlockKey::kMotion), mean, sigma);
+  window.priors = {prior};
+}
+
+void Initializer::levelAndCentre(SlidingWindow& window) const {
+  const Pose first = window.frames.front().T_w_b();
+  const Eigen::Quaterniond R(Eigen::AngleAxisd(-yawOf(first.q), Eigen::Vector3d::UnitZ()));
+  for (WindowFrame& frame : window.frames) {
+    const Pose T_w_b = frame.T_w_b();
+    frame.pose = toBlock(Pose{(R * T_w_b.q).normalized(), R * (T_w_b.p - first.p)});
+    frame.motion.segment<3>(kVelocityAt) = R * velocityOf(frame.motion.data());
+  }
+}
+
+}  // namespace lintel

@@ -1,0 +1,70 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "landmarks/LineDegeneracy.h"
+
+#include <Eigen/Eigenvalues>
+#include <algorithm>
+#include <cmath>
+
+namespace lintel {
+
+LineUncertainty uncertaintyOf(const OrthonormalLine& line, const Eigen::Matrix4d& information, double along_m) {
+  // The axes of U: u1 normal of the plane through origin and line, u2 the direction, -u3 towards the line.
+  // U Exp(psi): the direction moves by psi_x along u3 and -psi_z along u1; the foot -r u3 with r = cot(phi) likewise.
+  const double sine = std::sin(line.phi), r = std::cos(line.phi) / sine;
+  Eigen::Matrix<double, 2, 4> direction, position;
+  direction << 0, 0, -1, 0, 1, 0, 0, 0;
+  position << 0, -r, -along_m, 0, along_m, 0, 0, 1 / (sine * sine);
+  // a floor instead of an inverse that fails: 1e-6 of information is a sigma of 1000 rad
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix4d> solver(information);
+  const Eigen::Vector4d variance = solver.eigenvalues().cwiseMax(1e-6).cwiseInverse();
+  const Eigen::Matrix4d covariance = solver.eigenvectors() * variance.asDiagonal() * solver.eigenvectors().transpose();
+  const auto worst = [&](const Eigen::Matrix<double, 2, 4>& J) {
+    const Eigen::Matrix2d c = J * covariance * J.transpose();
+    return std::sqrt(Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d>(c).eigenvalues()[1]);
+  };
+  return {worst(direction), worst(position)};
+}
+
+double planeSigma(const SlidingWindow& window, const FactorParams& params, const LineSighting& s,
+                  const Eigen::Vector3d& d_w) {
+  const Eigen::Vector3d d_c = window.T_w_c(window.frame(s.frame)).q.conjugate() * d_w;
+  const Eigen::Vector3d start = s.start.corrected(window.correction.data()).homogeneous().normalized();
+  const Eigen::Vector3d end = s.end.corrected(window.correction.data()).homogeneous().normalized();
+  // each end moves across the line by sigma: the plane turns about the other one
+  const double sigma_ray = params.line_sigma_px * s.sigma_px / window.camera().meanFocal();
+  return sigma_ray * std::hypot(start.cross(d_c).norm(), end.cross(d_c).norm()) /
+         std::max(start.cross(end).norm(), 1e-6);
+}
+
+double epipoleAngle(const SlidingWindow& window, const LineTrack& track) {
+  constexpr double kLeastBaseline_m = 0.01;
+  const LineSighting& newest = track.sightings.back();
+  const Pose T_w_c = window.T_w_c(window.frame(newest.frame));
+  const Eigen::Vector3d start = newest.start.corrected(window.correction.data()).homogeneous();
+  const Eigen::Vector3d end = newest.end.corrected(window.correction.data()).homogeneous();
+  const Eigen::Vector3d n_w = T_w_c.q * start.cross(end).normalized();
+  double largest = 0;
+  for (const LineSighting& s : track.sightings) {
+    const Eigen::Vector3d baseline = window.T_w_c(window.frame(s.frame)).p - T_w_c.p;
+    if (baseline.norm() < kLeastBaseline_m) continue;
+    largest = std::max(largest, std::asin(std::min(1.0, std::abs(n_w.dot(baseline.normalized())))));
+  }
+  return largest;
+}
+
+LineVerdict judgeLine(const SlidingWindow& window, const DegeneracyParams& params, const LineTrack& track,
+                      double depth_m) {
+  if (params.test != "observability" && epipoleAngle(window, track) < params.max_epipole_angle_rad)
+    return LineVerdict::kThroughEpipole;
+  if (params.test == "epipole") return LineVerdict::kGood;
+  if (track.sigma_direction_rad > params.max_sigma_direction_rad) return LineVerdict::kDirectionUnknown;
+  if (track.sigma_distance_m > params.max_sigma_distance * depth_m) return LineVerdict::kDistanceUnknown;
+  return LineVerdict::kGood;
+}
+
+bool entersProblem(const LineTrack& track, const DegeneracyParams& params) {
+  if (!track.triangulated) return false;
+  return !track.degenerate() || params.lines == "use" || (params.lines == "constrain" && track.group != 0);
+}
+
+}  // namespace lintel

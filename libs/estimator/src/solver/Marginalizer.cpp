@@ -1,0 +1,80 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "solver/Marginalizer.h"
+
+#include <Eigen/Cholesky>
+#include <Eigen/Eigenvalues>
+#include <algorithm>
+#include <cmath>
+
+namespace lintel {
+
+namespace {
+
+constexpr double kNoInformation = 1e-8;  // eigenvalues below are taken as zero, relative to a residual of one sigma
+
+/// Symmetric pseudo-inverse; directions with less information than kNoInformation are left out.
+Eigen::MatrixXd pseudoInverse(const Eigen::MatrixXd& m) {
+  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(0.5 * (m + m.transpose()));
+  const Eigen::VectorXd inverse =
+      solver.eigenvalues().unaryExpr([](double v) { return v > kNoInformation ? 1.0 / v : 0.0; });
+  return solver.eigenvectors() * inverse.asDiagonal() * solver.eigenvectors().transpose();
+}
+
+/// H and b without rows [at, at + size), their information passed on to the others.
+void eliminate(NormalEquations& eq, Eigen::Index at, Eigen::Index size) {
+  const Eigen::Index rest = eq.H.rows() - at - size;
+  if (size == 0 || rest == 0) return;
+  const auto Hbm = eq.H.block(at + size, at, rest, size);
+  const Eigen::MatrixXd gain = Hbm * pseudoInverse(eq.H.block(at, at, size, size));
+  eq.b.tail(rest) -= gain * eq.b.segment(at, size);
+  eq.H.bottomRightCorner(rest, rest) -= gain * Hbm.transpose();
+}
+
+/// The prior with the cost 1/2 dx' H dx + b' dx: H = A' A by Cholesky's decomposition with pivots. Rows without
+/// information, or with no more than what rounding leaves, stay out.
+WindowPrior priorOf(std::vector<BlockKey> keys, std::vector<PriorBlock> blocks, const Eigen::MatrixXd& H,
+                    const Eigen::VectorXd& b) {
+  constexpr double kRounding = 1e-12;  // of what a state had before the others were taken from it
+  const Eigen::LDLT<Eigen::MatrixXd> ldlt(H);
+  const Eigen::VectorXd d = ldlt.vectorD();
+  const Eigen::VectorXi place =
+      ldlt.transpositionsP() * Eigen::VectorXi::LinSpaced(d.size(), 0, static_cast<int>(d.size()) - 1);
+  const Eigen::MatrixXd U = ldlt.matrixU();  // of the states in the order of `place`
+  const Eigen::VectorXd y = ldlt.matrixL().solve(Eigen::VectorXd(b(place)));
+  Eigen::MatrixXd A(d.size(), d.size());
+  Eigen::VectorXd r_0(d.size());
+  Eigen::Index rows = 0;
+  for (Eigen::Index i = 0; i < d.size(); ++i) {
+    if (!(d[i] > std::max(kNoInformation, kRounding * H(place[i], place[i])))) continue;
+    for (Eigen::Index k = 0; k < d.size(); ++k) A(rows, place[k]) = std::sqrt(d[i]) * U(i, k);
+    r_0[rows++] = y[i] / std::sqrt(d[i]);
+  }
+  WindowPrior prior;
+  prior.blocks = std::move(keys);
+  prior.factor = std::make_shared<PriorFactor>(std::move(blocks), A.topRows(rows), r_0.head(rows));
+  return prior;
+}
+
+}  // namespace
+
+std::optional<WindowPrior> marginalise(SlidingWindow& window, const std::vector<Factor>& factors,
+                                       const std::set<BlockKey>& dropped) {
+  ReducedSystem system(window, factors, dropped, {});
+  system.linearise();
+  NormalEquations eq = system.eliminate();
+  std::size_t kept = 0;
+  while (kept < eq.blocks.size() && dropped.count(eq.blocks[kept]) > 0) ++kept;
+  const Eigen::Index start = eq.offsets[kept], size = eq.H.rows() - start;
+  if (size == 0) return std::nullopt;
+  eliminate(eq, 0, start);
+  std::vector<PriorBlock> blocks;
+  for (std::size_t i = kept; i < eq.blocks.size(); ++i) {
+    const auto manifold = manifoldOf(eq.blocks[i].kind);
+    blocks.push_back(
+        {manifold, Eigen::Map<const Eigen::VectorXd>(window.block(eq.blocks[i]), manifold->AmbientSize())});
+  }
+  return priorOf({eq.blocks.begin() + static_cast<std::ptrdiff_t>(kept), eq.blocks.end()}, std::move(blocks),
+                 eq.H.bottomRightCorner(size, size), eq.b.tail(size));
+}
+
+}  // namespace lintel

@@ -1,0 +1,234 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "solver/ReducedSystem.h"
+
+#include <algorithm>
+#include <tuple>
+
+#include "solver/SparseCholesky.h"
+
+namespace lintel {
+
+namespace {
+
+std::map<FrameId, int> placeCameras(const SlidingWindow& window) {
+  std::map<FrameId, int> places;
+  for (const WindowFrame& frame : window.frames) places.emplace(frame.id, static_cast<int>(places.size()));
+  return places;
+}
+
+constexpr double kLeastDamping = 1e-6;
+
+/// Where the tangent space is the space itself, and its Jacobians are identities.
+bool isVectorSpace(const StateManifold& manifold) { return manifold.AmbientSize() == manifold.TangentSize(); }
+
+}  // namespace
+
+bool comesBefore(const BlockKey& a, const BlockKey& b) {
+  const auto rank = [](const BlockKey& key) {
+    const int kind = key.kind == BlockKey::kMotion ? -1 : static_cast<int>(key.kind);
+    const bool of_frame = key.kind == BlockKey::kMotion || key.kind == BlockKey::kPose;
+    return std::make_tuple(kind, of_frame ? ~key.id : key.id);  // the newest frame has the highest id
+  };
+  return rank(a) < rank(b);
+}
+
+ReducedSystem::ReducedSystem(SlidingWindow& window, const std::vector<Factor>& factors, const std::set<BlockKey>& first,
+                             const std::set<BlockKey>& frozen)
+    : window_(window), landmarks_(window, factors, placeCameras(window)) {
+  for (const Factor& factor : factors)
+    if (!LandmarkSystem::isVision(factor)) others_.push_back(factor);
+  placeStates(first, frozen);
+}
+
+void ReducedSystem::placeStates(const std::set<BlockKey>& first, const std::set<BlockKey>& frozen) {
+  std::set<BlockKey> all = landmarks_.states(window_);
+  for (const Factor& factor : others_) all.insert(factor.blocks.begin(), factor.blocks.end());
+  for (const BlockKey& key : frozen) all.erase(key);
+  states_.blocks.assign(all.begin(), all.end());
+  std::sort(states_.blocks.begin(), states_.blocks.end(), comesBefore);
+  std::stable_partition(states_.blocks.begin(), states_.blocks.end(),
+                        [&first](const BlockKey& key) { return first.count(key) > 0; });
+  Eigen::Index size = 0;
+  for (const BlockKey& key : states_.blocks) {
+    states_.offsets.push_back(size);
+    size += manifoldOf(key.kind)->TangentSize();
+  }
+  states_.offsets.push_back(size);
+}
+
+Eigen::Index ReducedSystem::offsetOf(const BlockKey& key) const {
+  const auto it = std::find(states_.blocks.begin(), states_.blocks.end(), key);
+  return it == states_.blocks.end() ? -1 : states_.offsets[static_cast<std::size_t>(it - states_.blocks.begin())];
+}
+
+std::vector<CameraView> ReducedSystem::views(bool derivatives) const {
+  std::vector<CameraView> result;
+  for (const WindowFrame& frame : window_.frames)
+    result.emplace_back(frame.pose.data(), window_.extrinsics.data(), window_.correction.data(),
+                        landmarks_.motion(static_cast<int>(result.size())), derivatives);
+  return result;
+}
+
+double ReducedSystem::cost() const {
+  double sum = landmarks_.cost(views(false));
+  std::vector<const double*> blocks;
+  Eigen::VectorXd r;
+  for (const Factor& factor : others_) {
+    blocks.clear();
+    for (const BlockKey& key : factor.blocks) blocks.push_back(window_.block(key));
+    r.resize(factor.cost->num_residuals());
+    factor.cost->Evaluate(blocks.data(), r.data(), nullptr);
+    sum += 0.5 * r.squaredNorm();
+  }
+  return sum;
+}
+
+double ReducedSystem::linearise() {
+  const Eigen::Index n = states_.offsets.back();
+  states_.H.setZero(n, n);
+  states_.b.setZero(n);
+  double sum = 0;
+  for (const Factor& factor : others_) {
+    const auto* prior = dynamic_cast<const PriorFactor*>(factor.cost);
+    sum += prior ? addPrior(factor, *prior) : addOther(factor);
+  }
+  views_ = views(true);
+  return sum + landmarks_.linearise(views_);
+}
+
+double ReducedSystem::addOther(const Factor& factor) {
+  const int rows = factor.cost->num_residuals();
+  std::vector<const double*> blocks;
+  std::vector<RowMajorMatrix> ambient;
+  std::vector<double*> pointers;
+  const Placement to = placementOf(factor);
+  for (std::size_t i = 0; i < factor.blocks.size(); ++i) {
+    blocks.push_back(window_.block(factor.blocks[i]));
+    ambient.emplace_back(rows, factor.cost->parameter_block_sizes()[i]);
+  }
+  for (RowMajorMatrix& m : ambient) pointers.push_back(m.data());
+  Eigen::VectorXd r(rows);
+  factor.cost->Evaluate(blocks.data(), r.data(), pointers.data());
+  Eigen::MatrixXd J(rows, to.size());
+  for (std::size_t i = 0; i < blocks.size(); ++i) {
+    const StateManifold& manifold = *manifoldOf(factor.blocks[i].kind);
+    auto of_block = J.middleCols(to.from[i], manifold.TangentSize());
+    if (isVectorSpace(manifold)) {
+      of_block = ambient[i];
+      continue;
+    }
+    RowMajorMatrix plus(manifold.AmbientSize(), manifold.TangentSize());
+    manifold.PlusJacobian(blocks[i], plus.data());
+    of_block = ambient[i].lazyProduct(plus);
+  }
+  addInformation(to, J.transpose() * J, J.transpose() * r);
+  return 0.5 * r.squaredNorm();
+}
+
+/// A prior's information does not change, only the tangent spaces turn: H = C' A'A C.
+double ReducedSystem::addPrior(const Factor& factor, const PriorFactor& prior) {
+  std::vector<const double*> blocks;
+  for (const BlockKey& key : factor.blocks) blocks.push_back(window_.block(key));
+  const Eigen::VectorXd r = prior.constant() + prior.root() * prior.difference(blocks.data());
+  Eigen::VectorXd gradient = prior.root().transpose() * r;
+  Eigen::MatrixXd H = prior.information();
+  const Placement to = placementOf(factor);
+  for (std::size_t i = 0; i < blocks.size(); ++i) {
+    const PriorBlock& block = prior.blocks()[i];
+    if (isVectorSpace(*block.manifold)) continue;
+    RowMajorMatrix plus(block.manifold->AmbientSize(), block.manifold->TangentSize());
+    block.manifold->PlusJacobian(blocks[i], plus.data());
+    const Eigen::MatrixXd C =
+        block.manifold->differenceJacobian(blocks[i], block.linearisation.data()).lazyProduct(plus);
+    H.middleCols(to.from[i], C.cols()) = H.middleCols(to.from[i], C.cols()).lazyProduct(C).eval();
+    H.middleRows(to.from[i], C.cols()) = C.transpose().lazyProduct(H.middleRows(to.from[i], C.cols())).eval();
+    gradient.segment(to.from[i], C.cols()) = C.transpose().lazyProduct(gradient.segment(to.from[i], C.cols())).eval();
+  }
+  addInformation(to, H, gradient);
+  return 0.5 * r.squaredNorm();
+}
+
+ReducedSystem::Placement ReducedSystem::placementOf(const Factor& factor) const {
+  Placement placement;
+  for (const BlockKey& key : factor.blocks) {
+    placement.to.push_back(offsetOf(key));
+    placement.from.push_back(placement.from.back() + manifoldOf(key.kind)->TangentSize());
+  }
+  return placement;
+}
+
+void ReducedSystem::addInformation(const Placement& place, const Eigen::MatrixXd& H, const Eigen::VectorXd& b) {
+  for (std::size_t i = 0; i < place.to.size(); ++i) {
+    const Eigen::Index rows = place.from[i + 1] - place.from[i];
+    if (place.to[i] < 0) continue;
+    states_.b.segment(place.to[i], rows) += b.segment(place.from[i], rows);
+    for (std::size_t j = 0; j < place.to.size(); ++j)
+      if (const Eigen::Index columns = place.from[j + 1] - place.from[j];
+          place.to[j] >= 0 && place.to[j] <= place.to[i])
+        states_.H.block(place.to[i], place.to[j], rows, columns) +=
+            H.block(place.from[i], place.from[j], rows, columns);
+  }
+}
+
+CameraChain ReducedSystem::chain() const {
+  const CameraLayout& layout = landmarks_.layout();
+  StatePlaces places;
+  for (const WindowFrame& frame : window_.frames) places.poses.push_back(offsetOf({BlockKey::kPose, frame.id}));
+  places.extrinsics = offsetOf({BlockKey::kExtrinsics, 0});
+  places.correction = offsetOf({BlockKey::kCorrection, 0});
+  places.directions.resize(layout.directions.size());
+  for (const auto& [id, place] : layout.directions)
+    places.directions[static_cast<std::size_t>(place)] = offsetOf({BlockKey::kDirection, id});
+  return {layout, views_, places};
+}
+
+NormalEquations ReducedSystem::eliminate() {
+  NormalEquations result = states_;
+  chain().add(landmarks_.eliminate(0), result.H, result.b);
+  result.H.triangularView<Eigen::StrictlyUpper>() = result.H.transpose();
+  return result;
+}
+
+bool ReducedSystem::solve(double damping) {
+  const CameraChain chain = this->chain();
+  Eigen::MatrixXd H = states_.H;
+  Eigen::VectorXd b = states_.b;
+  chain.add(landmarks_.eliminate(damping), H, b);
+  const Eigen::VectorXd added = damping * H.diagonal().cwiseMax(kLeastDamping);
+  H.diagonal() += added;
+  if (!factoriseSparse(H)) return false;
+  step_ = -H.triangularView<Eigen::Lower>().solve(b);
+  states_move_ = step_.norm();  // before the turn back from the factor's coordinates
+  H.transpose().triangularView<Eigen::Upper>().solveInPlace(step_);
+  if (!step_.allFinite()) return false;
+
+  Eigen::VectorXd gradient = states_.b;
+  chain.addGradient(landmarks_.direct().b, gradient);
+  model_decrease_ = 0.5 * step_.dot(added.cwiseProduct(step_) - gradient) +
+                    landmarks_.backSubstitute(chain.cameraStep(step_), damping);
+  return true;
+}
+
+void ReducedSystem::apply() {
+  saved_.clear();
+  for (std::size_t i = 0; i < states_.blocks.size(); ++i) {
+    const auto manifold = manifoldOf(states_.blocks[i].kind);
+    double* block = window_.block(states_.blocks[i]);
+    const auto at = static_cast<std::ptrdiff_t>(saved_.size());
+    saved_.insert(saved_.end(), block, block + manifold->AmbientSize());
+    manifold->Plus(saved_.data() + at, step_.data() + states_.offsets[i], block);
+  }
+  landmarks_.apply(saved_);
+}
+
+void ReducedSystem::revert() {
+  std::size_t at = 0;
+  for (const BlockKey& key : states_.blocks) {
+    const auto size = static_cast<std::size_t>(manifoldOf(key.kind)->AmbientSize());
+    std::copy_n(saved_.begin() + static_cast<std::ptrdiff_t>(at), size, window_.block(key));
+    at += size;
+  }
+  landmarks_.revert(saved_, at);
+}
+
+}  // namespace lintel

@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "solver/WindowSolver.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "solver/ReducedSystem.h"
+
+namespace lintel {
+
+namespace {
+
+constexpr double kFirstDamping = 1e-4, kLeastDamping = 1e-12, kMostDamping = 1e8;
+constexpr double kTolerance = 1e-3;  // the next frame goes on from here; 1e-4 costs a tenth more and changes nothing
+constexpr double kLeastGain = 1e-3;  // of the decrease that the model promised
+
+}  // namespace
+
+SolveSummary solveWindow(SlidingWindow& window, const std::vector<Factor>& factors,
+                         const CalibrationParams& calibration, const SolveLimits& limits) {
+  std::set<BlockKey> frozen;
+  if (!calibration.refine_extrinsics) frozen.insert({BlockKey::kExtrinsics, 0});
+  if (!calibration.refine_camera && !calibration.refine_time_offset) frozen.insert({BlockKey::kCorrection, 0});
+  ReducedSystem system(window, factors, {}, frozen);
+
+  SolveSummary summary;
+  double cost = summary.initial_cost = system.linearise();
+  double damping = kFirstDamping, raise = 2;
+  while (summary.iterations < limits.max_iterations && damping < kMostDamping) {
+    ++summary.iterations;
+    double moved_cost = cost, gain = 0;
+    if (system.solve(damping)) {
+      if (system.modelDecrease() < 1e-10 * cost) break;
+      system.apply();
+      moved_cost = system.cost();
+      gain = (cost - moved_cost) / system.modelDecrease();
+      if (!(gain > kLeastGain)) system.revert();
+    }
+    if (!(gain > kLeastGain)) {  // [Nielsen1999]
+      damping *= raise;
+      raise *= 2;
+      continue;
+    }
+    // A step that rejections have damped is short wherever the minimum lies.
+    const bool settled = damping <= kFirstDamping && system.statesMove() < limits.min_move;
+    const bool converged = settled || cost - moved_cost < kTolerance * cost;
+    cost = moved_cost;
+    if (converged) break;
+    damping = std::max(kLeastDamping, damping * std::max(1.0 / 3, 1 - std::pow(2 * gain - 1, 3)));
+    raise = 2;
+    if (summary.iterations < limits.max_iterations) system.linearise();
+  }
+  summary.final_cost = cost;
+  summary.usable = std::isfinite(cost);
+  return summary;
+}
+
+}  // namespace lintel

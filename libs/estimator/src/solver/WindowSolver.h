@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "lintel/estimator/EstimatorParams.h"
+#include "lintel/estimator/SlidingWindow.h"
+#include "window/WindowFactors.h"
+
+namespace lintel {
+
+struct SolveSummary {
+  int iterations = 0;
+  double initial_cost = 0, final_cost = 0;
+  bool usable = false;
+};
+
+/// When a solve has had enough.
+struct SolveLimits {
+  int max_iterations = 8;
+  double min_move = 0;  ///< of the states by a step, see ReducedSystem::statesMove; landmarks may still be on their way
+};
+
+/// Minimises the given residuals over all blocks of the window they touch: Levenberg-Marquardt on ReducedSystem. One
+/// thread and a limit on iterations, not on time: the same result every run.
+SolveSummary solveWindow(SlidingWindow& window, const std::vector<Factor>& factors,
+                         const CalibrationParams& calibration, const SolveLimits& limits);
+
+}  // namespace lintel

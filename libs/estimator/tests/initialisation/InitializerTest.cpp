@@ -1,0 +1,165 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "initialisation/Initializer.h"
+
+#include <gtest/gtest.h>
+
+#include <set>
+
+#include "TestWindow.h"
+#include "lintel/geometry/Rotation.h"
+
+namespace lintel {
+namespace {
+
+using namespace test;
+
+class InitializerTest : public testing::Test {
+ protected:
+  EstimatorParams params_;
+  Initializer initializer_{params_, eurocRig().T_b_c};
+};
+
+TrackedFlight flight(double noise_px, const ImuSimulatorParams& imu, double duration_s = 4,
+                     const Trajectory& trajectory = FigureTrajectory()) {
+  TrackSimulationParams tracks;
+  tracks.duration_s = duration_s;
+  tracks.point_noise_px = noise_px;
+  return fly(imu, tracks, trajectory);
+}
+
+/// How far the window's motion from its first to its last frame is from the truth, relative to its length; its frame
+/// of reference is the first pose's with yaw 0.
+double relativeMotionError(const SlidingWindow& window, const TrackedFlight& f, std::size_t first, std::size_t last) {
+  const Pose T_w_b0 = f.truth(first).state.T_w_b, T_w_b1 = f.truth(last).state.T_w_b;
+  const Eigen::Vector3d truth = T_w_b0.q.conjugate() * (T_w_b1.p - T_w_b0.p);
+  const Pose e0 = window.frames.front().T_w_b(), e1 = window.frames.back().T_w_b();
+  return (e0.q.conjugate() * (e1.p - e0.p) - truth).norm() / truth.norm();
+}
+
+/// Angle between the window's and the true vertical in body axes [rad].
+double tiltError(const WindowFrame& frame, const InertialTruth& truth) {
+  const Eigen::Vector3d up = Eigen::Vector3d::UnitZ();
+  return (frame.T_w_b().q.conjugate() * up).cross(truth.state.T_w_b.q.conjugate() * up).norm();
+}
+
+TEST_F(InitializerTest, StartsInMotion) {
+  ImuSimulatorParams imu;
+  const TrackedFlight f = flight(0.5, imu);
+  SlidingWindow window = bufferOf(f, 0, 20);
+  ASSERT_EQ(initializer_.initialise(window), "");
+  EXPECT_LT(relativeMotionError(window, f, 0, 38), 0.10);
+  EXPECT_LT(tiltError(window.frames.back(), f.truth(38)), 0.02);
+  EXPECT_LT((biasOf(window.frames.back().motion.data()).gyro - f.truth(38).bias_gyro).norm(), 0.01);
+  EXPECT_NEAR(velocityOf(window.frames.back().motion.data()).norm(), f.truth(38).state.v_w_b.norm(), 0.1);
+  EXPECT_LT(window.frames.front().T_w_b().p.norm(), 0.01);
+  EXPECT_NEAR(yawOf(window.frames.front().T_w_b().q), 0, 0.01);
+  EXPECT_EQ(window.priors.size(), 1u);
+}
+
+TEST_F(InitializerTest, ACleanStartIsPrecise) {
+  const TrackedFlight f = flight(0, perfectImu());
+  SlidingWindow window = bufferOf(f, 0, 20);
+  ASSERT_EQ(initializer_.initialise(window), "");
+  EXPECT_LT(relativeMotionError(window, f, 0, 38), 0.02);
+  EXPECT_LT(tiltError(window.frames.back(), f.truth(38)), 0.004);
+}
+
+TEST_F(InitializerTest, AcceptedStartsAreGoodWhereverTheyAreTried) {
+  ImuSimulatorParams imu;
+  imu.seed = 4;
+  const TrackedFlight f = flight(0.5, imu, 10);
+  int accepted = 0;
+  for (std::size_t first = 0; first + 40 < f.sim.frames.size(); first += 32) {
+    SlidingWindow window = bufferOf(f, first, 20);
+    if (!initializer_.initialise(window).empty()) continue;
+    ++accepted;
+    EXPECT_LT(relativeMotionError(window, f, first, first + 38), 0.25) << "from frame " << first;
+    EXPECT_LT(tiltError(window.frames.back(), f.truth(first + 38)), 0.05) << "from frame " << first;
+  }
+  EXPECT_GE(accepted, 3);
+}
+
+TEST_F(InitializerTest, StartsAtRest) {
+  const DelayedStart resting(std::make_shared<FigureTrajectory>(), 4);
+  ImuSimulatorParams imu;
+  const TrackedFlight f = flight(0.1, imu, 3, resting);
+  SlidingWindow window = bufferOf(f, 0, 12);
+  EXPECT_TRUE(initializer_.atRest(window));
+  ASSERT_EQ(initializer_.initialise(window), "");
+  for (const WindowFrame& frame : window.frames) {
+    EXPECT_TRUE(frame.at_rest);
+    EXPECT_EQ(velocityOf(frame.motion.data()).norm(), 0);
+    EXPECT_LT(frame.T_w_b().p.norm(), 1e-12);
+  }
+  // an accelerometer bias of 0.1 m/s^2 looks like a tilt of 10 mrad: more cannot be known at rest
+  EXPECT_LT(tiltError(window.frames.back(), f.truth(22)), 0.02);
+  EXPECT_LT((biasOf(window.frames.back().motion.data()).gyro - f.truth(22).bias_gyro).norm(), 0.001);
+}
+
+TEST_F(InitializerTest, PureRotationIsNeverAccepted) {
+  FigureParams turning;
+  turning.translation = 0;
+  const TrackedFlight f = flight(0.5, ImuSimulatorParams{}, 10, FigureTrajectory(turning));
+  for (std::size_t first = 0; first + 40 < f.sim.frames.size(); first += 32) {
+    SlidingWindow window = bufferOf(f, first, 20);
+    EXPECT_FALSE(initializer_.atRest(window));
+    EXPECT_NE(initializer_.initialise(window), "") << "from frame " << first;
+  }
+}
+
+TEST_F(InitializerTest, ARefusedStartLeavesTheBufferAlone) {
+  FigureParams turning;
+  turning.translation = 0;
+  const TrackedFlight f = flight(0, perfectImu(), 3, FigureTrajectory(turning));
+  SlidingWindow window = bufferOf(f, 0, 20);
+  const SlidingWindow before = window;
+  ASSERT_NE(initializer_.initialise(window), "");
+  ASSERT_EQ(window.frames.size(), before.frames.size());
+  for (std::size_t i = 0; i < before.frames.size(); ++i) {
+    EXPECT_EQ(window.frames[i].pose, before.frames[i].pose);
+    EXPECT_EQ(window.frames[i].motion, before.frames[i].motion);
+    if (before.frames[i].imu) {
+      EXPECT_EQ(window.frames[i].imu->bias().gyro, before.frames[i].imu->bias().gyro);
+    }
+  }
+  EXPECT_EQ(window.points.size(), before.points.size());
+  EXPECT_TRUE(window.priors.empty());
+}
+
+TEST_F(InitializerTest, SaysWhatItWaitsFor) {
+  const TrackedFlight f = flight(0, perfectImu());
+  SlidingWindow few = bufferOf(f, 0, 9);
+  EXPECT_EQ(initializer_.initialise(few), "collecting frames");
+  SlidingWindow gap = bufferOf(f, 0, 15);
+  gap.frames[7].imu.reset();
+  EXPECT_EQ(initializer_.initialise(gap), "waiting for IMU samples between all frames");
+  FigureParams slow;
+  slow.half_extent = {0.02, 0.02, 0.02};
+  slow.shake = 0;
+  const TrackedFlight hovering = flight(0, perfectImu(), 3, FigureTrajectory(slow));
+  SlidingWindow hover = bufferOf(hovering, 0, 15);
+  EXPECT_EQ(initializer_.initialise(hover), "waiting for parallax");
+}
+
+TEST(MedianDisparity, CountsPixelsWithAndWithoutRotation) {
+  FigureParams turning;
+  turning.translation = 0;
+  const TrackedFlight f = flight(0, perfectImu(), 2, FigureTrajectory(turning));
+  const SlidingWindow window = bufferOf(f, 0, 10);
+  const double seen = medianDisparityPx(window, 0, 9, false), without_rotation = medianDisparityPx(window, 0, 9, true);
+  EXPECT_GT(seen, 20);
+  EXPECT_LT(without_rotation, 0.1 * seen);  // the camera is some centimetres off the axis
+  EXPECT_GE(without_rotation, 0);
+}
+
+TEST(MedianDisparity, NeedsTenSharedPoints) {
+  SlidingWindow window = windowAt({at(0, 0, 0), at(0.1, 0, 0)});
+  for (TrackId id = 0; id < 9; ++id)
+    for (FrameId frame : {0u, 1u}) seePoint(window, id, frame, {0.1 * static_cast<double>(id), 0, 5});
+  EXPECT_LT(medianDisparityPx(window, 0, 1, false), 0);
+  for (FrameId frame : {0u, 1u}) seePoint(window, 9, frame, {0.9, 0.1, 5});
+  EXPECT_NEAR(medianDisparityPx(window, 0, 1, false), 500 * 0.1 / 5, 1e-9);
+}
+
+}  // namespace
+}  // namespace lintel

@@ -1,0 +1,209 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "solver/Marginalizer.h"
+
+#include <gtest/gtest.h>
+
+#include <Eigen/Cholesky>
+#include <algorithm>
+#include <random>
+
+#include "DenseReference.h"
+#include "TestWindow.h"
+#include "landmarks/PointTriangulation.h"
+#include "lintel/factors/PriorFactors.h"
+#include "window/WindowMarginalization.h"
+
+namespace lintel {
+namespace {
+
+using namespace test;
+
+const EstimatorParams kParams;
+
+std::set<BlockKey> firstFrameAndPoints(const SlidingWindow& window) {
+  std::set<BlockKey> dropped{{BlockKey::kPose, 0}, {BlockKey::kMotion, 0}};
+  for (const auto& [id, track] : window.points)
+    if (track.triangulated) dropped.insert({BlockKey::kPoint, id});
+  return dropped;
+}
+
+/// The prior's residual at block values that differ from the window's by `dx` in the tangent space.
+Eigen::VectorXd residualAt(SlidingWindow& window, const WindowPrior& prior, const Eigen::VectorXd& dx) {
+  std::vector<Eigen::VectorXd> moved;
+  std::vector<const double*> pointers;
+  Eigen::Index at = 0;
+  for (const BlockKey& key : prior.blocks) {
+    const auto manifold = manifoldOf(key.kind);
+    Eigen::VectorXd x(manifold->AmbientSize());
+    manifold->Plus(window.block(key), dx.data() + at, x.data());
+    moved.push_back(x);
+    at += manifold->TangentSize();
+  }
+  for (const Eigen::VectorXd& x : moved) pointers.push_back(x.data());
+  Eigen::VectorXd r(prior.factor->num_residuals());
+  prior.factor->Evaluate(pointers.data(), r.data(), nullptr);
+  return r;
+}
+
+/// A small window off its optimum, with every kind of residual that is marginalised.
+class MarginalizerTest : public testing::Test {
+ protected:
+  MarginalizerTest() {
+    TrackSimulationParams few;
+    few.duration_s = 2;
+    few.max_points_per_frame = 25;
+    few.point_noise_px = 0.7;
+    few.max_lines_per_frame = 5;
+    flight_ = fly(ImuSimulatorParams{}, few);
+    window_ = trueWindow(flight_, 10, 5);
+    triangulatePoints(window_, kParams.landmarks, 1);
+    for (std::size_t k = 0; k < window_.frames.size(); ++k)
+      window_.frames[k].pose.head<3>() += 0.002 * Eigen::Vector3d(1, -1, static_cast<double>(k));
+    factors_ = std::make_unique<WindowFactors>(window_, kParams.factors);
+    factors_->addImu();
+    factors_->addPoints();
+    factors_->addCalibrationPriors(kParams.calibration, flight_.rig.T_b_c);
+    factors_->addGauge();
+    Eigen::VectorXd sigma = Eigen::VectorXd::Constant(kMotionSize, 0.1);
+    factors_->add(makeBlockPrior(manifoldOf(BlockKey::kMotion), window_.frames[0].motion, sigma),
+                  {{BlockKey::kMotion, 0}});
+  }
+
+  TrackedFlight flight_;
+  SlidingWindow window_{eurocRig()};
+  std::unique_ptr<WindowFactors> factors_;
+};
+
+TEST_F(MarginalizerTest, CostOverDisplacementsIsThatOfExplicitElimination) {
+  const std::set<BlockKey> dropped = firstFrameAndPoints(window_);
+  ASSERT_GT(dropped.size(), 12u);
+  const NormalEquations eq = linearise(window_, factors_->factors(), dropped);
+  const Eigen::Index m = eq.offsets[dropped.size()], n = eq.H.rows() - m;
+  const auto prior = marginalise(window_, factors_->factors(), dropped);
+  ASSERT_TRUE(prior);
+  ASSERT_EQ(std::vector<BlockKey>(eq.blocks.begin() + static_cast<std::ptrdiff_t>(dropped.size()), eq.blocks.end()),
+            prior->blocks);
+  const double cost_0 = 0.5 * residualAt(window_, *prior, Eigen::VectorXd::Zero(n)).squaredNorm();
+  // the dropped blocks' best reaction to a displacement of the others, in one dense solve
+  const Eigen::LDLT<Eigen::MatrixXd> Hmm(eq.H.topLeftCorner(m, m));
+  const auto bestCost = [&](const Eigen::VectorXd& dx) {
+    Eigen::VectorXd all(m + n);
+    all << -Hmm.solve(eq.b.head(m) + eq.H.topRightCorner(m, n) * dx), dx;
+    return 0.5 * all.dot(eq.H * all) + eq.b.dot(all);
+  };
+  const double best_0 = bestCost(Eigen::VectorXd::Zero(n));
+  std::mt19937 random(5);
+  std::normal_distribution<double> gauss(0, 1e-2);
+  for (int i = 0; i < 20; ++i) {
+    Eigen::VectorXd dx(n);
+    for (double& v : dx) v = gauss(random);
+    const double expected = bestCost(dx) - best_0;
+    const double cost = 0.5 * residualAt(window_, *prior, dx).squaredNorm() - cost_0;
+    EXPECT_NEAR(cost, expected, 1e-6 * std::abs(expected));
+  }
+}
+
+TEST_F(MarginalizerTest, GradientIsThatOfExplicitElimination) {
+  const std::set<BlockKey> dropped = firstFrameAndPoints(window_);
+  const NormalEquations eq = linearise(window_, factors_->factors(), dropped);
+  const Eigen::Index m = eq.offsets[dropped.size()], n = eq.H.rows() - m;
+  const Eigen::VectorXd expected =
+      eq.b.tail(n) - eq.H.bottomLeftCorner(n, m) * eq.H.topLeftCorner(m, m).ldlt().solve(eq.b.head(m));
+  const auto prior = marginalise(window_, factors_->factors(), dropped);
+  ASSERT_TRUE(prior);
+  const NormalEquations again = linearise(window_, {{prior->factor.get(), nullptr, prior->blocks}}, {});
+  ASSERT_EQ(again.blocks, prior->blocks);
+  EXPECT_LT((again.b - expected).norm(), 1e-6 * expected.norm());
+}
+
+TEST_F(MarginalizerTest, GradientOfTheNormalEquationsIsThatOfTheRobustCost) {
+  NormalEquations eq = linearise(window_, factors_->factors(), {});
+  const auto cost = [&] {
+    double sum = 0;
+    for (const Factor& f : factors_->factors()) {
+      std::vector<const double*> blocks;
+      for (const BlockKey& key : f.blocks) blocks.push_back(window_.block(key));
+      Eigen::VectorXd r(f.cost->num_residuals());
+      f.cost->Evaluate(blocks.data(), r.data(), nullptr);
+      double rho[3] = {r.squaredNorm(), 1, 0};
+      if (f.loss) f.loss->Evaluate(r.squaredNorm(), rho);
+      sum += 0.5 * rho[0];
+    }
+    return sum;
+  };
+  for (std::size_t i = 0; i < eq.blocks.size(); ++i) {
+    const auto manifold = manifoldOf(eq.blocks[i].kind);
+    double* x = window_.block(eq.blocks[i]);
+    const Eigen::VectorXd x_0 = Eigen::Map<Eigen::VectorXd>(x, manifold->AmbientSize());
+    for (int k = 0; k < manifold->TangentSize(); ++k) {
+      const double step = 1e-6;
+      const auto shifted = [&](double by) {
+        Eigen::VectorXd delta = Eigen::VectorXd::Zero(manifold->TangentSize());
+        delta[k] = by;
+        manifold->Plus(x_0.data(), delta.data(), x);
+        const double value = cost();
+        Eigen::Map<Eigen::VectorXd>(x, manifold->AmbientSize()) = x_0;
+        return value;
+      };
+      const double numeric = (shifted(step) - shifted(-step)) / (2 * step);
+      const double curvature = eq.H(eq.offsets[i] + k, eq.offsets[i] + k);
+      EXPECT_NEAR(eq.b[eq.offsets[i] + k], numeric, 1e-4 * std::abs(numeric) + 1e-6 * std::sqrt(curvature) + 1e-2)
+          << "block " << i << " component " << k;
+    }
+  }
+}
+
+TEST_F(MarginalizerTest, NothingStaysNothingComes) {
+  WindowFactors factors(window_, kParams.factors);
+  factors.addGauge();
+  EXPECT_FALSE(marginalise(window_, factors.factors(), {{BlockKey::kPose, 0}}));
+}
+
+/// How much a prior resists moving (turning about z) the whole world, relative to its strongest direction.
+double resistance(SlidingWindow& window, const WindowPrior& prior, const Eigen::Vector3d& shift, double yaw_rate) {
+  const NormalEquations eq = linearise(window, {{prior.factor.get(), nullptr, prior.blocks}}, {});
+  Eigen::VectorXd direction = Eigen::VectorXd::Zero(eq.H.rows());
+  const Eigen::Vector3d turn = yaw_rate * Eigen::Vector3d::UnitZ();
+  for (std::size_t i = 0; i < eq.blocks.size(); ++i) {
+    const BlockKey& key = eq.blocks[i];
+    if (key.kind == BlockKey::kPose) {
+      const Pose T_w_b = window.frame(key.id).T_w_b();
+      direction.segment<3>(eq.offsets[i]) = shift + turn.cross(T_w_b.p);
+      direction.segment<3>(eq.offsets[i] + 3) = T_w_b.q.conjugate() * turn;
+    } else if (key.kind == BlockKey::kMotion) {
+      direction.segment<3>(eq.offsets[i]) = turn.cross(velocityOf(window.frame(key.id).motion.data()));
+    }
+  }
+  direction.normalize();
+  const double strongest = std::sqrt(eq.H.diagonal().maxCoeff());
+  return std::sqrt(std::abs(direction.dot(eq.H * direction))) / strongest;
+}
+
+TEST(MarginalisedPrior, LeavesPositionAndYawFree) {
+  TrackSimulationParams tracks;
+  tracks.duration_s = 3;
+  tracks.max_points_per_frame = 60;
+  const TrackedFlight flight = fly(perfectImu(), tracks);
+  SlidingWindow window = trueWindow(flight, 0, 10);
+  triangulatePoints(window, kParams.landmarks, 1);
+  for (int round = 0; round < 3; ++round) {  // a prior goes into the next one
+    marginaliseOldest(window, kParams);
+    window.removeFrame(window.frames.front().id, true);
+    ASSERT_EQ(window.priors.size(), 1u);
+    const WindowPrior& prior = window.priors[0];
+    EXPECT_LT(resistance(window, prior, Eigen::Vector3d::UnitX(), 0), 1e-6) << round;
+    EXPECT_LT(resistance(window, prior, Eigen::Vector3d::UnitY(), 0), 1e-6) << round;
+    EXPECT_LT(resistance(window, prior, Eigen::Vector3d::UnitZ(), 0), 1e-6) << round;
+    EXPECT_LT(resistance(window, prior, Eigen::Vector3d::Zero(), 1), 1e-6) << round;
+    // the measure is not blind: one frame alone may not move
+    const NormalEquations eq = linearise(window, {{prior.factor.get(), nullptr, prior.blocks}}, {});
+    const auto pose = std::find_if(eq.blocks.begin(), eq.blocks.end(),
+                                   [](const BlockKey& key) { return key.kind == BlockKey::kPose; });
+    ASSERT_NE(pose, eq.blocks.end());
+    const Eigen::Index at = eq.offsets[static_cast<std::size_t>(pose - eq.blocks.begin())];
+    EXPECT_GT(std::sqrt(eq.H(at, at) / eq.H.diagonal().maxCoeff()), 1e-4);
+  }
+}
+
+}  // namespace
+}  // namespace lintel

@@ -1,0 +1,140 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "solver/ReducedSystem.h"
+
+#include <gtest/gtest.h>
+
+#include <Eigen/Cholesky>
+
+#include "DenseReference.h"
+#include "TestWindow.h"
+#include "landmarks/LineTriangulation.h"
+#include "landmarks/PointTriangulation.h"
+#include "lintel/factors/StructuralFactor.h"
+
+namespace lintel {
+namespace {
+
+using namespace test;
+
+const EstimatorParams kParams;
+
+bool isLandmark(const BlockKey& key) { return key.kind == BlockKey::kPoint || key.kind == BlockKey::kLine; }
+
+/// A window off its optimum with points, lines, and lines tied to a shared direction.
+class ReducedSystemTest : public testing::Test {
+ protected:
+  ReducedSystemTest() {
+    TrackSimulationParams few;
+    few.duration_s = 2;
+    few.max_points_per_frame = 20;
+    few.point_noise_px = few.line_noise_px = 0.7;
+    few.max_lines_per_frame = 8;
+    window_ = trueWindow(fly(ImuSimulatorParams{}, few), 10, 5);
+    triangulatePoints(window_, kParams.landmarks, 1);
+    triangulateLines(window_, kParams);
+    for (std::size_t k = 0; k < window_.frames.size(); ++k)
+      window_.frames[k].pose.head<3>() += 0.002 * Eigen::Vector3d(1, -1, static_cast<double>(k));
+    window_.correction << 0.3, -0.2, 0.1, 0.4, 1e-3, -1e-3, 1e-3;
+    window_.directions[3].d_w = DirectionBlock(0.1, 0.2, 1).normalized();
+    factors_ = std::make_unique<WindowFactors>(window_, kParams.factors);
+    factors_->addImu();
+    factors_->addPoints();
+    factors_->addLines(kParams.degeneracy);
+    factors_->addCalibrationPriors(kParams.calibration, window_.T_b_c());
+    factors_->addGauge();
+    for (const auto& [id, track] : window_.lines)
+      if (track.triangulated && !track.degenerate() && lines_++ % 2 == 0)
+        factors_->add(std::make_unique<SharedDirectionFactor>(10.0),
+                      {{BlockKey::kLine, id}, {BlockKey::kDirection, 3}});
+    for (auto& [id, track] : window_.lines) {  // and some that have a direction only
+      if (track.triangulated && !track.degenerate()) continue;
+      track.group = 3;
+      for (const LineSighting& s : track.sightings) factors_->addVanishing(track, s, kParams.degeneracy);
+      vanishing_ += !track.sightings.empty();
+    }
+  }
+
+  std::set<BlockKey> landmarks() const {
+    std::set<BlockKey> result;
+    for (const Factor& factor : factors_->factors())
+      for (const BlockKey& key : factor.blocks)
+        if (isLandmark(key)) result.insert(key);
+    return result;
+  }
+
+  SlidingWindow window_{eurocRig()};
+  std::unique_ptr<WindowFactors> factors_;
+  int lines_ = 0, vanishing_ = 0;
+};
+
+TEST_F(ReducedSystemTest, EqualsTheSchurComplementOfTheDenseSystem) {
+  const std::set<BlockKey> eliminated = landmarks();
+  ASSERT_GT(eliminated.size(), 15u);
+  ASSERT_GE(lines_, 2);
+  ASSERT_GE(vanishing_, 1);
+  const NormalEquations dense = linearise(window_, factors_->factors(), eliminated);
+  const Eigen::Index m = dense.offsets[eliminated.size()], n = dense.H.rows() - m;
+  const Eigen::LDLT<Eigen::MatrixXd> Hmm(dense.H.topLeftCorner(m, m));
+  const Eigen::MatrixXd H =
+      dense.H.bottomRightCorner(n, n) - dense.H.bottomLeftCorner(n, m) * Hmm.solve(dense.H.topRightCorner(m, n));
+  const Eigen::VectorXd b = dense.b.tail(n) - dense.H.bottomLeftCorner(n, m) * Hmm.solve(dense.b.head(m));
+
+  ReducedSystem system(window_, factors_->factors(), {}, {});
+  system.linearise();
+  const NormalEquations reduced = system.eliminate();
+  ASSERT_EQ(reduced.blocks, std::vector<BlockKey>(dense.blocks.begin() + static_cast<std::ptrdiff_t>(eliminated.size()),
+                                                  dense.blocks.end()));
+  const Eigen::VectorXd scale = H.diagonal().cwiseSqrt();
+  for (Eigen::Index i = 0; i < n; ++i) {
+    EXPECT_NEAR(reduced.b[i], b[i], 1e-7 * scale[i] * b.cwiseQuotient(scale).norm()) << i;
+    for (Eigen::Index j = 0; j < n; ++j)
+      EXPECT_NEAR(reduced.H(i, j), H(i, j), 1e-7 * scale[i] * scale[j]) << i << " " << j;
+  }
+}
+
+TEST_F(ReducedSystemTest, AStepSolvesTheDampedDenseSystem) {
+  // no damping to speak of: the whole system's solution, landmarks included
+  const NormalEquations dense = linearise(window_, factors_->factors(), landmarks());
+  const Eigen::VectorXd expected = -dense.H.ldlt().solve(dense.b);
+  const double decrease = -0.5 * expected.dot(dense.b);
+  const SlidingWindow before = window_;
+  ReducedSystem system(window_, factors_->factors(), {}, {});
+  const double cost = system.linearise();
+  EXPECT_NEAR(system.cost(), cost, 1e-9 * cost);
+  ASSERT_TRUE(system.solve(1e-12));
+  EXPECT_NEAR(system.modelDecrease(), decrease, 1e-4 * decrease);
+  const NormalEquations states = system.eliminate();
+  const Eigen::VectorXd step_of_states = -states.H.ldlt().solve(states.b);
+  EXPECT_NEAR(system.statesMove(), std::sqrt(step_of_states.dot(states.H * step_of_states)),
+              1e-4 * system.statesMove());
+  system.apply();
+  for (std::size_t i = 0; i < dense.blocks.size(); ++i) {
+    const auto manifold = manifoldOf(dense.blocks[i].kind);
+    SlidingWindow start = before;
+    Eigen::VectorXd step(manifold->TangentSize());
+    manifold->Minus(window_.block(dense.blocks[i]), start.block(dense.blocks[i]), step.data());
+    const Eigen::VectorXd want = expected.segment(dense.offsets[i], manifold->TangentSize());
+    EXPECT_LT((step - want).norm(), 2e-3 * want.norm() + 1e-6) << "block " << i;
+  }
+  system.revert();
+  for (const BlockKey& key : dense.blocks) {
+    SlidingWindow start = before;
+    const auto size = static_cast<std::size_t>(manifoldOf(key.kind)->AmbientSize());
+    EXPECT_TRUE(std::equal(start.block(key), start.block(key) + size, window_.block(key)));
+  }
+}
+
+TEST_F(ReducedSystemTest, FrozenBlocksAreConstants) {
+  const std::set<BlockKey> frozen{{BlockKey::kExtrinsics, 0}, {BlockKey::kCorrection, 0}};
+  const SlidingWindow before = window_;
+  ReducedSystem system(window_, factors_->factors(), {}, frozen);
+  const double cost = system.linearise();
+  ASSERT_TRUE(system.solve(1e-4));
+  system.apply();
+  EXPECT_LT(system.cost(), cost);
+  EXPECT_EQ(window_.extrinsics, before.extrinsics);
+  EXPECT_EQ(window_.correction, before.correction);
+}
+
+}  // namespace
+}  // namespace lintel

@@ -1,0 +1,103 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "solver/WindowSolver.h"
+
+#include <gtest/gtest.h>
+
+#include "DenseReference.h"
+#include "TestWindow.h"
+#include "landmarks/LineTriangulation.h"
+#include "landmarks/PointTriangulation.h"
+#include "solver/ReducedSystem.h"
+
+namespace lintel {
+namespace {
+
+using namespace test;
+
+const EstimatorParams kParams;
+
+SlidingWindow disturbedWindow() {
+  TrackSimulationParams tracks;
+  tracks.duration_s = 2;
+  tracks.max_points_per_frame = 30;
+  tracks.max_lines_per_frame = 8;
+  tracks.point_noise_px = tracks.line_noise_px = 0.5;
+  SlidingWindow window = trueWindow(fly(ImuSimulatorParams{}, tracks), 10, 6);
+  triangulatePoints(window, kParams.landmarks, 1);
+  triangulateLines(window, kParams);
+  for (std::size_t k = 0; k < window.frames.size(); ++k)
+    window.frames[k].pose.head<3>() += 0.01 * Eigen::Vector3d(1, -1, static_cast<double>(k % 3));
+  return window;
+}
+
+WindowFactors everything(const SlidingWindow& window) {
+  WindowFactors factors(window, kParams.factors);
+  factors.addGauge();
+  factors.addCalibrationPriors(kParams.calibration, window.T_b_c());
+  factors.addImu();
+  factors.add(makeBlockPrior(manifoldOf(BlockKey::kMotion), window.frames.front().motion,
+                             Eigen::VectorXd::Constant(kMotionSize, 0.02)),  // half a second does not show the scale
+              {{BlockKey::kMotion, window.frames.front().id}});
+  factors.addPoints();
+  factors.addLines(kParams.degeneracy);
+  return factors;
+}
+
+TEST(WindowSolver, FindsTheMinimumThatCeresFinds) {
+  SlidingWindow window = disturbedWindow(), reference = window;
+  const WindowFactors factors = everything(window), others = everything(reference);
+  const SolveSummary summary = solveWindow(window, factors.factors(), kParams.calibration, {50});
+  const double cost = solveWithCeres(reference, others.factors());
+  ASSERT_TRUE(summary.usable);
+  EXPECT_GT(summary.initial_cost, 2 * cost);
+  EXPECT_LT(summary.final_cost, 1.01 * cost) << "it stops when a step brings less than a thousandth";
+  for (std::size_t k = 0; k < window.frames.size(); ++k)
+    EXPECT_LT((window.frames[k].T_w_b().p - reference.frames[k].T_w_b().p).norm(), 2e-3) << k;
+}
+
+TEST(WindowSolver, StopsAtTheLimitOfIterations) {
+  SlidingWindow window = disturbedWindow();
+  const WindowFactors factors = everything(window);
+  EXPECT_EQ(solveWindow(window, factors.factors(), kParams.calibration, {1}).iterations, 1);
+}
+
+/// Distance of two windows' states in the standard deviations that the residuals give them.
+double statesApart(SlidingWindow& window, const SlidingWindow& other, const std::vector<Factor>& factors) {
+  ReducedSystem system(window, factors, {}, {});
+  system.linearise();
+  const NormalEquations equations = system.eliminate();
+  Eigen::VectorXd apart(equations.H.rows());
+  SlidingWindow copy = other;
+  for (std::size_t i = 0; i < equations.blocks.size(); ++i) {
+    const BlockKey& key = equations.blocks[i];
+    manifoldOf(key.kind)->Minus(copy.block(key), window.block(key), apart.data() + equations.offsets[i]);
+  }
+  return std::sqrt(apart.dot(equations.H * apart));
+}
+
+TEST(WindowSolver, StatesHaveSettledBeforeTheLandmarks) {
+  SlidingWindow window = disturbedWindow();
+  const WindowFactors before = everything(window);
+  solveWindow(window, before.factors(), kParams.calibration, {50});
+  for (auto& [id, track] : window.points)  // as in a flight: good states, new landmarks that are not yet in place
+    if (id % 4 == 0) track.point.head<3>() *= 1.5;
+  SlidingWindow settled = window;
+  const WindowFactors factors = everything(window), same = everything(settled);
+  const SolveSummary all = solveWindow(window, factors.factors(), kParams.calibration, {50});
+  const SolveSummary some = solveWindow(settled, same.factors(), kParams.calibration, {50, 0.3});
+  EXPECT_LT(some.iterations, all.iterations);
+  EXPECT_LT(statesApart(window, settled, factors.factors()), 0.3);
+}
+
+TEST(WindowSolver, NeverEndsWorseThanItBegan) {
+  SlidingWindow window = disturbedWindow();
+  for (auto& [id, track] : window.points)  // far from anything sensible
+    if (id % 3 == 0) track.point.head<3>() = -track.point.head<3>();
+  const WindowFactors factors = everything(window);
+  const SolveSummary summary = solveWindow(window, factors.factors(), kParams.calibration, {30});
+  EXPECT_LE(summary.final_cost, summary.initial_cost);
+  for (const WindowFrame& frame : window.frames) EXPECT_TRUE(frame.pose.allFinite() && frame.motion.allFinite());
+}
+
+}  // namespace
+}  // namespace lintel

@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "window/FailureDetection.h"
+
+#include <gtest/gtest.h>
+
+#include <limits>
+
+#include "TestWindow.h"
+#include "lintel/geometry/Rotation.h"
+
+namespace lintel {
+namespace {
+
+using namespace test;
+
+class FailureDetectionTest : public testing::Test {
+ protected:
+  WindowFrame& newest() { return window_.frames.back(); }
+  std::string failure() const { return findFailure(window_, params_, at(1, 0, 0)); }
+
+  FailureParams params_;
+  SlidingWindow window_ = windowAt({at(0, 0, 0), at(1, 0, 0)});
+};
+
+TEST_F(FailureDetectionTest, AGoodWindowIsNoFailure) { EXPECT_EQ(failure(), ""); }
+
+TEST_F(FailureDetectionTest, NumbersThatAreNone) {
+  newest().pose[1] = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_EQ(failure(), "the estimate is not finite");
+  newest().pose = toBlock(at(1, 0, 0));
+  newest().motion[4] = std::numeric_limits<double>::infinity();
+  EXPECT_EQ(failure(), "the estimate is not finite");
+}
+
+TEST_F(FailureDetectionTest, ImplausibleBiases) {
+  newest().motion.segment<3>(kBiasAccelAt) << 0, 0.99 * params_.max_bias_accel, 0;
+  EXPECT_EQ(failure(), "");
+  newest().motion.segment<3>(kBiasAccelAt) << 0, 1.01 * params_.max_bias_accel, 0;
+  EXPECT_EQ(failure(), "the accelerometer bias is implausible");
+  newest().motion.setZero();
+  newest().motion.segment<3>(kBiasGyroAt) << 0, 0, -1.01 * params_.max_bias_gyro;
+  EXPECT_EQ(failure(), "the gyroscope bias is implausible");
+}
+
+TEST_F(FailureDetectionTest, JumpsAwayFromThePrediction) {
+  newest().pose = toBlock(at(1, 0.99 * params_.max_step_m, 0));
+  EXPECT_EQ(failure(), "");
+  newest().pose = toBlock(at(1, 1.01 * params_.max_step_m, 0));
+  EXPECT_EQ(failure(), "the position jumped away from the IMU's prediction");
+  newest().pose = toBlock(Pose{expRotation({1.01 * params_.max_step_rad, 0, 0}), {1, 0, 0}});
+  EXPECT_EQ(failure(), "the orientation jumped away from the IMU's prediction");
+}
+
+}  // namespace
+}  // namespace lintel

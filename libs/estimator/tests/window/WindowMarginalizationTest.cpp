@@ -1,0 +1,129 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "window/WindowMarginalization.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+#include "DenseReference.h"
+#include "TestWindow.h"
+#include "landmarks/LineTriangulation.h"
+#include "landmarks/PointTriangulation.h"
+#include "solver/Marginalizer.h"
+
+namespace lintel {
+namespace {
+
+using namespace test;
+
+const EstimatorParams kParams;
+
+bool touches(const WindowPrior& prior, BlockKey::Kind kind, std::uint64_t id) {
+  return std::find(prior.blocks.begin(), prior.blocks.end(), BlockKey{kind, id}) != prior.blocks.end();
+}
+
+WindowPrior motionPrior(const SlidingWindow& window, FrameId id) {
+  WindowPrior prior;
+  prior.blocks = {{BlockKey::kMotion, id}};
+  prior.factor = makeBlockPrior(manifoldOf(BlockKey::kMotion), window.frame(id).motion,
+                                Eigen::VectorXd::Constant(kMotionSize, 0.1));
+  return prior;
+}
+
+SlidingWindow flownWindow() {
+  TrackSimulationParams tracks;
+  tracks.duration_s = 2;
+  tracks.max_points_per_frame = 40;
+  SlidingWindow window = trueWindow(fly(perfectImu(), tracks), 0, 8);
+  triangulatePoints(window, kParams.landmarks, 1);
+  triangulateLines(window, kParams);
+  return window;
+}
+
+TEST(MarginaliseOldest, LeavesOnePriorOnTheStatesThatStay) {
+  SlidingWindow window = flownWindow();
+  window.priors = {motionPrior(window, 0), motionPrior(window, 5)};
+  const auto untouched = window.priors[1].factor;
+  marginaliseOldest(window, kParams);
+  ASSERT_EQ(window.priors.size(), 2u);
+  EXPECT_EQ(window.priors[0].factor, untouched) << "a prior on other frames stays as it is";
+  const WindowPrior& prior = window.priors[1];
+  EXPECT_FALSE(touches(prior, BlockKey::kPose, 0));
+  EXPECT_FALSE(touches(prior, BlockKey::kMotion, 0));
+  EXPECT_TRUE(touches(prior, BlockKey::kPose, 1));
+  EXPECT_TRUE(touches(prior, BlockKey::kMotion, 1)) << "by the IMU";
+  EXPECT_TRUE(touches(prior, BlockKey::kPose, 7)) << "by points seen from 0 to 7";
+  EXPECT_TRUE(touches(prior, BlockKey::kExtrinsics, 0));
+  for (const BlockKey& key : prior.blocks) EXPECT_TRUE(key.kind != BlockKey::kPoint && key.kind != BlockKey::kLine);
+  EXPECT_TRUE(window.contains(0)) << "removing the frame is the caller's";
+}
+
+TEST(MarginaliseOldest, NoSightingCountsTwice) {
+  SlidingWindow window = flownWindow();
+  const SlidingWindow before = window;
+  marginaliseOldest(window, kParams);
+  int consumed = 0, untouched = 0;
+  for (const auto& [id, track] : window.points) {
+    const PointTrack& was = before.points.at(id);
+    const bool used = was.triangulated && was.sightings.size() > 1 && was.sightings.front().frame == 0;
+    if (!used) {
+      EXPECT_EQ(track.sightings.size(), was.sightings.size());
+      ++untouched;
+    } else if (was.sightings.back().frame == 7 && was.sightings.size() > 2) {
+      ASSERT_EQ(track.sightings.size(), 2u);
+      EXPECT_EQ(track.sightings.front().frame, 0u);
+      EXPECT_EQ(track.sightings.back().frame, 7u);
+      EXPECT_EQ(track.former.size(), was.sightings.size() - 2) << "they stay part of the track's history";
+      ++consumed;
+    }
+  }
+  EXPECT_GT(consumed, 5);
+  EXPECT_GT(untouched, 5);
+}
+
+TEST(MarginaliseOldest, ARestingFrameTakesItsVelocityAlong) {
+  SlidingWindow window = flownWindow();
+  const auto informationOnVelocity = [&](bool at_rest) {
+    SlidingWindow copy = window;
+    copy.frames[0].at_rest = at_rest;
+    marginaliseOldest(copy, kParams);
+    const WindowPrior& prior = copy.priors.back();
+    const NormalEquations eq = linearise(copy, {{prior.factor.get(), nullptr, prior.blocks}}, {{BlockKey::kMotion, 1}});
+    return eq.H.topLeftCorner<3, 3>().trace();
+  };
+  EXPECT_GT(informationOnVelocity(true), 1.5 * informationOnVelocity(false));
+}
+
+TEST(MarginaliseSecondNewest, JoinsTheImuAndDropsTheImages) {
+  SlidingWindow window = flownWindow();
+  const std::size_t priors = window.priors.size();
+  const double dt = window.frames[6].imu->dt_s() + window.frames[7].imu->dt_s();
+  const auto shared_with_others = window.frames[6].imu;
+  const double kept_dt = shared_with_others->dt_s();
+  marginaliseSecondNewest(window);
+  EXPECT_NEAR(window.frames[7].imu->dt_s(), dt, 1e-12);
+  EXPECT_EQ(shared_with_others->dt_s(), kept_dt) << "another owner's pre-integration is not touched";
+  EXPECT_EQ(window.priors.size(), priors);
+  // the joined IMU goes from frame 5 to frame 7
+  const Pose T_b5_w = window.frames[5].T_w_b().inverse();
+  EXPECT_LT((T_b5_w.q * window.frames[7].T_w_b().q).angularDistance(window.frames[7].imu->deltaR()), 1e-4);
+}
+
+TEST(MarginaliseSecondNewest, KeepsWhatPriorsKnewThroughTheFrame) {
+  SlidingWindow window = flownWindow();
+  WindowPrior both;  // ties the motions of frames 5 and 6 together
+  both.blocks = {{BlockKey::kMotion, 5}, {BlockKey::kMotion, 6}};
+  Eigen::MatrixXd A = Eigen::MatrixXd::Identity(2 * kMotionSize, 2 * kMotionSize);
+  const auto manifold = manifoldOf(BlockKey::kMotion);
+  std::vector<PriorBlock> blocks{{manifold, window.frames[5].motion}, {manifold, window.frames[6].motion}};
+  both.factor = std::make_shared<PriorFactor>(blocks, A, Eigen::VectorXd::Zero(2 * kMotionSize));
+  window.priors = {both, motionPrior(window, 2)};
+  marginaliseSecondNewest(window);
+  ASSERT_EQ(window.priors.size(), 2u);
+  EXPECT_TRUE(touches(window.priors[0], BlockKey::kMotion, 2));
+  EXPECT_TRUE(touches(window.priors[1], BlockKey::kMotion, 5));
+  EXPECT_FALSE(touches(window.priors[1], BlockKey::kMotion, 6));
+}
+
+}  // namespace
+}  // namespace lintel

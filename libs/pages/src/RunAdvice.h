@@ -1,0 +1,17 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "lintel/pages/RunSeries.h"
+#include "lintel/pipeline/Odometry.h"
+
+namespace lintel {
+
+/// What went wrong in a run, or nearly, in words that say what to do; the gravest first. Empty if nothing did.
+/// `calibration` is what the recording came with; `recording_warnings` is what reading it found.
+std::vector<std::string> adviceFor(const OdometryResult& result, const Rig& calibration, const RunSeries& series,
+                                   const std::vector<std::string>& recording_warnings);
+
+}  // namespace lintel

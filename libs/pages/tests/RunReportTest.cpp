@@ -1,0 +1,97 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "lintel/pages/RunReport.h"
+
+#include <gmock/gmock.h>
+
+#include "RunAdvice.h"
+
+namespace lintel {
+namespace {
+
+using ::testing::Contains;
+using ::testing::HasSubstr;
+using ::testing::IsEmpty;
+using ::testing::Not;
+
+/// A run without a fault: 10 s along a curve.
+struct GoodRun {
+  OdometryResult result;
+  RunSeries series;
+  RunRecord record;
+
+  GoodRun() {
+    record.input = "/data/hall/mav0";
+    record.configuration = record.defaults = "a: 1\nb:\n  c: 2\n";
+    record.calibration.camera.fx = record.calibration.camera.fy = 460;
+    result.rig = record.calibration;
+    OdometryStatistics& s = result.statistics;
+    for (int i = 0; i < 200; ++i) {
+      const std::int64_t t_ns = i * std::int64_t{50000000};
+      const Pose T_w_b{Eigen::Quaterniond::Identity(), {0.05 * i, std::sin(0.05 * i), 0}};
+      result.trajectory.push_back({t_ns, T_w_b});
+      record.groundtruth.emplace_back(t_ns, T_w_b);
+      FrameTracks tracks;
+      tracks.points.resize(120);
+      WindowUpdate update;
+      update.t_ns = t_ns;
+      update.status = EstimatorStatus::kTracking;
+      update.points_used = 100;
+      series.add(tracks, update);
+    }
+    s.frames = s.frames_with_pose = s.window_frames = 200;
+    s.last_frame_ns = result.trajectory.back().t_ns;
+    s.first_pose_s = 0.9;
+    s.mean_points_used = 100;
+  }
+  std::vector<std::string> advice() const {
+    return adviceFor(result, record.calibration, series, record.recording_warnings);
+  }
+};
+
+TEST(RunAdvice, AGoodRunNeedsNone) { EXPECT_THAT(GoodRun().advice(), IsEmpty()); }
+
+TEST(RunAdvice, SaysWhatToDoAboutEachFault) {
+  GoodRun run;
+  run.result.statistics.resets = 1;
+  run.result.statistics.failures = {"at 3.20 s: too few points"};
+  run.result.rig.camera.fx = 480;
+  run.result.rig.T_b_c.p.x() = 0.05;
+  run.result.time_offset_s = 0.012;
+  run.record.recording_warnings = {"data.csv:7: image missing"};
+  const auto advice = run.advice();
+  for (const char* words : {"at 3.20 s: too few points", "Calibrate it again", "5.0 cm", "12.0 ms", "data.csv:7"})
+    EXPECT_THAT(advice, Contains(HasSubstr(words)));
+}
+
+TEST(RunAdvice, WithoutAPoseItSaysHowToGetOne) {
+  GoodRun run;
+  run.result.statistics.frames_with_pose = 0;
+  run.result.statistics.last_wait = "too little parallax";
+  EXPECT_THAT(run.advice(), Contains(HasSubstr("(too little parallax). Start where the camera moves")));
+}
+
+TEST(RunReport, ShowsErrorsOnlyWithGroundTruth) {
+  GoodRun run;
+  EXPECT_THAT(runReport(run.record, run.result, run.series), HasSubstr("position error (RMSE)"));
+  run.record.groundtruth.clear();
+  const std::string page = runReport(run.record, run.result, run.series);
+  EXPECT_THAT(page, Not(HasSubstr("position error (RMSE)")));
+  EXPECT_THAT(page, HasSubstr("carries no ground truth"));
+  EXPECT_THAT(page, HasSubstr("<h1>Run on hall</h1>"));
+}
+
+TEST(RunReport, ShowsOptionsThatDiffer) {
+  GoodRun run;
+  run.record.configuration = "a: 1\nb:\n  c: 3\n";
+  const std::string page = runReport(run.record, run.result, run.series);
+  EXPECT_THAT(page, HasSubstr("<pre>b.c = 3\n</pre>"));
+}
+
+TEST(RunReport, OfARunThatFoundNothing) {
+  GoodRun run;
+  run.result = {};
+  EXPECT_THAT(runReport(run.record, run.result, RunSeries()), HasSubstr("No pose was found"));
+}
+
+}  // namespace
+}  // namespace lintel

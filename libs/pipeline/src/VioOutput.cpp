@@ -1,0 +1,166 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "lintel/pipeline/VioOutput.h"
+
+#include <sys/resource.h>
+
+#include <algorithm>
+#include <cinttypes>
+#include <cstdio>
+#include <nlohmann/json.hpp>
+
+namespace lintel {
+
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+Json stageJson(std::vector<double> ms) {
+  std::sort(ms.begin(), ms.end());
+  const auto quantile = [&](double q) {
+    return ms.empty() ? 0 : ms[std::min(ms.size() - 1, static_cast<std::size_t>(q * static_cast<double>(ms.size())))];
+  };
+  double sum = 0;
+  for (const double v : ms) sum += v;
+  return {{"count", ms.size()},
+          {"mean_ms", ms.empty() ? 0 : sum / static_cast<double>(ms.size())},
+          {"median_ms", quantile(0.5)},
+          {"p95_ms", quantile(0.95)},
+          {"max_ms", ms.empty() ? 0 : ms.back()}};
+}
+
+Json stagesJson(const OdometryStatistics& s) {
+  Json stages{{"decoding", stageJson(s.decoding.ms())},       {"tracking", stageJson(s.tracking.ms())},
+              {"estimation", stageJson(s.estimation.ms())},   {"mapping", stageJson(s.mapping.ms())},
+              {"map fitting", stageJson(s.map_fitting.ms())}, {"refinement", stageJson(s.refinement.ms())}};
+  for (const auto& [name, times] : s.front_end.stages)
+    stages["tracking: " + name] = stageJson(std::vector<double>(times.ms.begin(), times.ms.end()));
+  return stages;
+}
+
+Json trackingJson(const FrontEndStatistics& f) {
+  return {{"points",
+           {{"tracked", f.points.tracked},
+            {"detected", f.points.detected},
+            {"lost_klt", f.points.lost_klt},
+            {"lost_backward", f.points.lost_backward},
+            {"lost_epipolar", f.points.lost_epipolar},
+            {"median_length", f.points.lifetimes.median()}}},
+          {"lines",
+           {{"tracked", f.lines.tracked},
+            {"created", f.lines.created},
+            {"detections", f.lines.detections},
+            {"merged", f.lines.merged},
+            {"share_seen_in_10_frames", f.lines.lifetimes.shareOfAtLeast(10)},
+            {"median_length", f.lines.lifetimes.median()}}}};
+}
+
+Json refinementJson(const OdometryResult& result) {
+  const RefinementReport& r = result.refinement;
+  return {{"accepted", r.accepted},
+          {"verdict", r.verdict.empty() ? "left out" : r.verdict},
+          {"iterations", r.iterations},
+          {"residuals", r.residuals},
+          {"points", r.points},
+          {"lines", r.lines},
+          {"landmarks_joined", r.merged},
+          {"cost", {r.cost_before, r.cost_after}},
+          {"held_out_points_px", {r.held_out_before_px, r.held_out_after_px}},
+          {"imu_sigmas", {r.imu_before, r.imu_after}},
+          {"moved_m", r.moved_m},
+          {"turned_rad", r.turned_rad}};
+}
+
+Json cameraJson(const PinholeRadtan& c, const Pose& T_b_c, double time_offset_s) {
+  return {{"intrinsics_px", {c.fx, c.fy, c.cx, c.cy}},
+          {"distortion", {c.k1, c.k2, c.p1, c.p2}},
+          {"p_b_c_m", {T_b_c.p.x(), T_b_c.p.y(), T_b_c.p.z()}},
+          {"q_b_c_xyzw", {T_b_c.q.x(), T_b_c.q.y(), T_b_c.q.z(), T_b_c.q.w()}},
+          {"time_offset_s", time_offset_s}};
+}
+
+/// The final calibration; beside it what was given, and what the last window made of it, with its sigmas.
+Json calibrationJson(const OdometryResult& result, const Rig& given) {
+  Json json = cameraJson(result.rig.camera, result.rig.T_b_c, result.time_offset_s);
+  json["given"] = cameraJson(given.camera, given.T_b_c, 0);
+  const CalibrationEstimate& last = result.window_calibration;
+  if (!last.sigma) return json;
+  const CalibrationSigma& s = *last.sigma;
+  json["window"] = cameraJson(last.camera, last.T_b_c, last.time_offset_s);
+  json["window"]["sigma"] = {{"intrinsics_px", {s.camera[0], s.camera[1], s.camera[2], s.camera[3]}},
+                             {"distortion", {s.camera[4], s.camera[5]}},
+                             {"p_b_c_m", {s.p_b_c_m.x(), s.p_b_c_m.y(), s.p_b_c_m.z()}},
+                             {"R_b_c_rad", {s.R_b_c_rad.x(), s.R_b_c_rad.y(), s.R_b_c_rad.z()}},
+                             {"time_offset_s", s.time_offset_s}};
+  return json;
+}
+
+Json cpuJson(const OdometryStatistics& statistics, const RunCosts& costs, double process_ms) {
+  Json json;
+  for (const auto& [stage, ms] : costs.breakdown(statistics, process_ms)) json[stage] = ms;
+  json["whole process"] = process_ms;
+  return json;
+}
+
+}  // namespace
+
+std::string trajectoryText(const std::vector<OdometryPose>& trajectory) {
+  std::string text = "# timestamp tx ty tz qx qy qz qw\n";
+  char line[256];
+  for (const OdometryPose& pose : trajectory) {
+    const Eigen::Vector3d& p = pose.T_w_b.p;
+    const Eigen::Quaterniond& q = pose.T_w_b.q;
+    std::snprintf(line, sizeof line, "%" PRId64 ".%09" PRId64 " %.9f %.9f %.9f %.9f %.9f %.9f %.9f\n",
+                  pose.t_ns / 1000000000, pose.t_ns % 1000000000, p.x(), p.y(), p.z(), q.x(), q.y(), q.z(), q.w());
+    text += line;
+  }
+  return text;
+}
+
+std::string statisticsJson(const OdometryResult& result, const Rig& given, const RunCosts& costs,
+                           const std::vector<std::string>& warnings) {
+  const OdometryStatistics& s = result.statistics;
+  const double wall_s = costs.wall_s, process_ms = processTimeMs();
+  const Json json{{"frames", s.frames},
+                  {"frames_with_pose", s.frames_with_pose},
+                  {"first_frame_ns", s.first_frame_ns},
+                  {"last_frame_ns", s.last_frame_ns},
+                  {"window_frames", s.window_frames},
+                  {"keyframes", s.keyframes},
+                  {"first_pose_s", s.first_pose_s},
+                  {"resets", s.resets},
+                  {"reset_reasons", s.failures},
+                  {"mean_points_used", s.mean_points_used},
+                  {"mean_lines_tracked", s.mean_lines_tracked},
+                  {"mean_lines_placed", s.mean_lines_placed},
+                  {"mean_lines_used", s.mean_lines_used},
+                  {"mean_lines_degenerate", s.mean_lines_degenerate},
+                  {"mean_lines_constrained", s.mean_lines_constrained},
+                  {"degenerate_share", s.mean_lines_placed > 0 ? s.mean_lines_degenerate / s.mean_lines_placed : 0},
+                  {"mean_lines_degenerate_by_reason",
+                   {{"through_epipole", s.mean_lines_through_epipole},
+                    {"direction_unknown", s.mean_lines_direction_unknown},
+                    {"distance_unknown", s.mean_lines_distance_unknown}}},
+                  {"map_points", result.map.points.size()},
+                  {"map_lines", result.map.lines.size()},
+                  {"map_lines_beside", result.lines_beside},
+                  {"refinement", refinementJson(result)},
+                  {"calibration", calibrationJson(result, given)},
+                  {"cpu_ms_per_frame", s.frames > 0 ? process_ms / static_cast<double>(s.frames) : 0},
+                  {"cpu_ms", cpuJson(s, costs, process_ms)},
+                  {"wall_s", wall_s},
+                  {"frames_per_s", wall_s > 0 ? static_cast<double>(s.frames) / wall_s : 0},
+                  {"peak_memory_mb", peakMemoryMb()},
+                  {"stages", stagesJson(s)},
+                  {"tracking", trackingJson(s.front_end)},
+                  {"warnings", warnings},
+                  {"ended_early", result.error}};
+  return json.dump(2) + "\n";
+}
+
+double peakMemoryMb() {
+  rusage usage{};
+  getrusage(RUSAGE_SELF, &usage);
+  return static_cast<double>(usage.ru_maxrss) / 1024.0;  // kilobytes on Linux
+}
+
+}  // namespace lintel

@@ -1,0 +1,104 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "lintel/pipeline/Odometry.h"
+
+#include <gtest/gtest.h>
+
+#include <stdexcept>
+#include <thread>
+
+namespace lintel {
+namespace {
+
+/// Black images at rest; after `frames` the recording ends or, with a complaint, breaks off.
+class BlackRecording : public Recording {
+ public:
+  explicit BlackRecording(int frames, std::string complaint = "") : frames_(frames), complaint_(std::move(complaint)) {
+    rig_.camera = {160, 120, 100, 100, 79.5, 59.5, 0, 0, 0, 0};
+    auto image = std::make_shared<GrayImage>();
+    *image = {160, 120, std::vector<std::uint8_t>(160 * 120, 0)};
+    image_ = image;
+  }
+  const Rig& rig() const override { return rig_; }
+  std::optional<FrameWithImu> next() override {
+    if (delivered_ == frames_) {
+      if (!complaint_.empty()) throw RecordingError(complaint_);
+      return std::nullopt;
+    }
+    FrameWithImu step;
+    step.frame = {delivered_ * kStep_ns, image_};
+    for (int i = delivered_ == 0 ? 10 : 0; i <= 10; ++i)
+      step.imu.push_back({(delivered_ - 1) * kStep_ns + i * kStep_ns / 10, {0, 0, 0}, {0, 0, 9.81}});
+    ++delivered_;
+    return step;
+  }
+  std::size_t expectedFrames() const override { return static_cast<std::size_t>(frames_); }
+  std::vector<std::string> warnings() const override { return {}; }
+
+ private:
+  static constexpr std::int64_t kStep_ns = 50'000'000;
+  int frames_, delivered_ = 0;
+  std::string complaint_;
+  Rig rig_;
+  std::shared_ptr<const GrayImage> image_;
+};
+
+class OdometryTest : public testing::TestWithParam<int> {};  // threads
+
+TEST_P(OdometryTest, EveryFrameIsSeenOnceInOrderByTheCallingThread) {
+  BlackRecording recording(30);
+  std::size_t seen = 0;
+  const auto caller = std::this_thread::get_id();
+  const OdometryResult result =
+      runOdometry(recording, {}, GetParam(),
+                  [&](const Frame& frame, const FrameTracks& tracks, const WindowUpdate& update, std::size_t done) {
+                    EXPECT_EQ(frame.t_ns, static_cast<std::int64_t>(seen) * 50'000'000);
+                    EXPECT_EQ(tracks.t_ns, frame.t_ns);
+                    EXPECT_EQ(update.t_ns, frame.t_ns);
+                    EXPECT_EQ(done, ++seen);
+                    EXPECT_EQ(std::this_thread::get_id(), caller);
+                  });
+  EXPECT_EQ(seen, 30u);
+  EXPECT_EQ(result.statistics.frames, 30u);
+  EXPECT_EQ(result.statistics.tracking.ms().size(), 30u);
+  EXPECT_EQ(result.statistics.estimation.ms().size(), 30u);
+  EXPECT_EQ(result.error, "");
+}
+
+TEST_P(OdometryTest, WithoutAPoseItSaysWhatWasWaitedFor) {
+  BlackRecording recording(6);
+  const OdometryResult result = runOdometry(recording, {}, GetParam(), {});
+  EXPECT_TRUE(result.trajectory.empty());
+  EXPECT_EQ(result.statistics.frames_with_pose, 0u);
+  EXPECT_LT(result.statistics.first_pose_s, 0);
+  EXPECT_EQ(result.statistics.last_wait, "collecting frames");
+  EXPECT_TRUE(result.map.keyframes.empty());
+}
+
+TEST_P(OdometryTest, ARecordingThatBreaksOffIsAnErrorWithWhatCameBefore) {
+  BlackRecording recording(12, "flight.rawlog: cut off");
+  const OdometryResult result = runOdometry(recording, {}, GetParam(), {});
+  EXPECT_EQ(result.statistics.frames, 12u);
+  EXPECT_EQ(result.error, "flight.rawlog: cut off");
+}
+
+TEST_P(OdometryTest, AnEmptyRecordingIsAnEmptyResult) {
+  BlackRecording recording(0);
+  const OdometryResult result = runOdometry(recording, {}, GetParam(), {});
+  EXPECT_EQ(result.statistics.frames, 0u);
+  EXPECT_EQ(result.error, "");
+}
+
+TEST_P(OdometryTest, AnObserverThatThrowsEndsTheRun) {
+  BlackRecording recording(1000);
+  const auto run = [&] {
+    runOdometry(recording, {}, GetParam(), [](const Frame&, const FrameTracks&, const WindowUpdate&, std::size_t done) {
+      if (done == 5) throw std::runtime_error("the disk is full");
+    });
+  };
+  EXPECT_THROW(run(), std::runtime_error);
+}
+
+INSTANTIATE_TEST_SUITE_P(Threads, OdometryTest, testing::Values(1, 2));
+
+}  // namespace
+}  // namespace lintel
