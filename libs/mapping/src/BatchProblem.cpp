@@ -52,16 +52,15 @@ CorrectionBlock correctionOf(const PinholeRadtan& camera, const PinholeRadtan& c
   return c;
 }
 
-class ProgressCallback : public ceres::IterationCallback {
+class IterationCallback : public ceres::IterationCallback {
  public:
-  explicit ProgressCallback(const std::function<void(int)>& progress) : progress_(progress) {}
+  explicit IterationCallback(const std::function<bool(int)>& goOn) : goOn_(goOn) {}
   ceres::CallbackReturnType operator()(const ceres::IterationSummary& summary) override {
-    if (progress_) progress_(summary.iteration);
-    return ceres::SOLVER_CONTINUE;
+    return goOn_(summary.iteration) ? ceres::SOLVER_CONTINUE : ceres::SOLVER_TERMINATE_SUCCESSFULLY;
   }
 
  private:
-  const std::function<void(int)>& progress_;
+  const std::function<bool(int)>& goOn_;
 };
 
 }  // namespace
@@ -194,8 +193,7 @@ void BatchProblem::addImu() {
   }
 }
 
-BatchProblem::Summary BatchProblem::solve(int max_iterations, double tolerance,
-                                          const std::function<void(int)>& progress) {
+BatchProblem::Summary BatchProblem::solve(int max_iterations, double tolerance, const std::function<bool(int)>& goOn) {
   auto ordering = std::make_shared<ceres::ParameterBlockOrdering>();
   for (std::size_t i = 0; i < points_.size(); ++i) ordering->AddElementToGroup(at(points_at_ + i * kPointSize), 0);
   for (std::size_t i = 0; i < lines_.size(); ++i) ordering->AddElementToGroup(at(lines_at_ + i * kLineSize), 0);
@@ -217,7 +215,7 @@ BatchProblem::Summary BatchProblem::solve(int max_iterations, double tolerance,
   // where they are: a few steps may raise the cost if it comes down below what it was.
   options.use_nonmonotonic_steps = true;
   options.logging_type = ceres::SILENT;
-  ProgressCallback callback(progress);
+  IterationCallback callback(goOn);
   options.callbacks.push_back(&callback);
   ceres::Solver::Summary summary;
   ceres::Solve(options, problem_.get(), &summary);

@@ -44,9 +44,9 @@ class BatchProblem {
     std::size_t residuals = 0;
     double cost_before = 0, cost_after = 0;
   };
-  /// Ends when an iteration lowers the cost by less than `tolerance` of it. `progress` is called after every iteration
-  /// with their number.
-  Summary solve(int max_iterations, double tolerance, const std::function<void(int)>& progress);
+  /// Ends when an iteration lowers the cost by less than `tolerance` of it, or when `goOn`, called after every
+  /// iteration with their number, says so.
+  Summary solve(int max_iterations, double tolerance, const std::function<bool(int)>& goOn);
 
   /// Keyframes and calibration as solved, into the material. Landmarks are estimated anew by MapFitting.
   void writeBack();

@@ -147,7 +147,15 @@ RefinementReport BatchRefinement::adjust(MapMaterial& material, const Refinement
                                        [&](const PointRecord& p) { return isHeldOut(p, params_.held_out_share); }),
                         material.points.end());
 
+  bool cancelled = false;
+  const auto goOn = [&](int round, int iteration) {
+    const double done = round + std::min(1.0, static_cast<double>(iteration) / params_.max_iterations);
+    if (progress && !progress(done / params_.rounds) && done < params_.rounds) cancelled = true;
+    return !cancelled;
+  };
+  report.verdict = "not refined: the run was cancelled";
   for (int round = 0; round < params_.rounds; ++round) {
+    if (!goOn(round, 0)) return report;
     MapFitting fitting(map_, material);
     fitting.fitAll();
     // The causal poses drifted: what is the same comes together only after a first adjustment.
@@ -167,10 +175,9 @@ RefinementReport BatchRefinement::adjust(MapMaterial& material, const Refinement
                          static_cast<std::size_t>(std::max(0, params_.max_views)), groups);
     if (round == 0) report.imu_before = problem.imuError();
     // landmarks are chosen and judged anew after every round but the last: those need not converge
-    const auto summary = problem.solve(params_.max_iterations, last ? 1e-4 : 1e-2, [&](int iteration) {
-      if (progress)
-        progress((round + std::min(1.0, static_cast<double>(iteration) / params_.max_iterations)) / params_.rounds);
-    });
+    const auto summary = problem.solve(params_.max_iterations, last ? 1e-4 : 1e-2,
+                                       [&](int iteration) { return goOn(round, iteration); });
+    if (cancelled) return report;
     if (!summary.usable) {
       report.verdict = "not refined: the adjustment found no solution";
       return report;

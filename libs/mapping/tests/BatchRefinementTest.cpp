@@ -107,6 +107,29 @@ TEST_F(BatchRefinementTest, TakesTheDriftAway) {
   EXPECT_NE(report.verdict.find("refined"), std::string::npos);
 }
 
+TEST_F(BatchRefinementTest, ACancelledRefinementLeavesPosesAndEstimatesLandmarks) {
+  for (const double when : {0.0, 0.25, 0.7}) {  // at the start, within a round, when lines are merged
+    MapMaterial refused = material_, prepared = material_;
+    std::vector<double> told;
+    const RefinementReport report = BatchRefinement(rig_, estimator_, {}, params_).refine(refused, [&](double done) {
+      told.push_back(done);
+      return done < when;
+    });
+    EXPECT_FALSE(report.accepted);
+    EXPECT_EQ(report.verdict, "not refined: the run was cancelled");
+    ASSERT_GE(told.size(), 2u);
+    EXPECT_EQ(told.back(), 1);
+    EXPECT_LT(told[told.size() - 2], when + 0.2) << "it went on";
+    prepareMaterial({}, prepared);
+    EXPECT_EQ(error(refused), error(prepared));
+    const LineMap map = drawMap({}, refused), expected = drawMap({}, prepared);
+    ASSERT_EQ(map.lines.size(), expected.lines.size());
+    ASSERT_FALSE(map.lines.empty());
+    for (std::size_t i = 0; i < map.lines.size(); ++i)
+      EXPECT_EQ(map.lines[i].segment_w.start, expected.lines[i].segment_w.start);
+  }
+}
+
 TEST_F(BatchRefinementTest, LandmarksComeOutWhereTheyAre) {
   refine(material_);
   std::vector<Eigen::Vector3d> estimate, truth;
@@ -199,7 +222,10 @@ TEST_F(BatchRefinementTest, AChangeThatIsTooLargeIsNotUsed) {
 
 TEST_F(BatchRefinementTest, ProgressGoesFromNothingToAll) {
   std::vector<double> done;
-  BatchRefinement(rig_, estimator_, {}, params_).refine(material_, [&](double d) { done.push_back(d); });
+  BatchRefinement(rig_, estimator_, {}, params_).refine(material_, [&](double d) {
+    done.push_back(d);
+    return true;
+  });
   ASSERT_GT(done.size(), 3u);
   EXPECT_TRUE(std::is_sorted(done.begin(), done.end()));
   EXPECT_EQ(done.back(), 1);

@@ -103,7 +103,7 @@ class LintelBench {
         ->capture_default_str();
     app_.add_option("-j,--jobs", workers_, "Runs at the same time")->check(CLI::PositiveNumber)->capture_default_str();
     app_.add_option("--threads", vio_threads_, "Threads of each run; results do not depend on it")
-        ->check(CLI::PositiveNumber)
+        ->check(CLI::IsMember({1, 2}))
         ->capture_default_str();
     app_.add_flag("--print-jobs", print_jobs_, "Print what is missing, a shell command a run, and stop");
     app_.add_flag("--collect", collect_, "Run nothing; make the tables of what is there");

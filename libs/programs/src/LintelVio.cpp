@@ -18,11 +18,11 @@
 #include "ProgramMain.h"
 #include "lintel/core/AtomicFile.h"
 #include "lintel/exporting/MapExport.h"
-#include "lintel/mapping/MapFile.h"
 #include "lintel/pages/RunReport.h"
 #include "lintel/pipeline/Configuration.h"
 #include "lintel/pipeline/Odometry.h"
-#include "lintel/pipeline/VioOutput.h"
+#include "lintel/pipeline/Results.h"
+#include "lintel/pipeline/RunStatistics.h"
 #include "lintel/reporting/Progress.h"
 #include "lintel/sensing/GroundTruth.h"
 #include "lintel/tracking/TrackDrawing.h"
@@ -67,7 +67,7 @@ class LintelVio {
     if (result.statistics.frames == 0 && !result.error.empty()) throw RecordingError(result.error);
     const std::vector<std::string> warnings = recording->warnings();
     for (const std::string& warning : warnings) err_ << kName << ": warning: " << warning << "\n";
-    writeOutput(result, configuration, warnings);
+    writeOutput(result, warnings);
     if (!quiet_) summarise(result, wall_s);
     if (!result.error.empty())
       throw RecordingError(result.error + " (what was computed until then is in " + output_ + ")");
@@ -91,7 +91,7 @@ class LintelVio {
     app_.add_option("--to", recording_params_.to_s, "Stop this long after the first frame [s]; 0 = at the end")
         ->check(CLI::NonNegativeNumber);
     app_.add_option("--threads", threads_, "1: one stage after the other; 2: tracking beside estimation. Same result")
-        ->check(CLI::Range(1, 64))
+        ->check(CLI::IsMember({1, 2}))
         ->capture_default_str();
     app_.add_option("--export", exports_, "Forms of the map to write, with commas between; none for no export")
         ->delimiter(',')
@@ -139,59 +139,47 @@ class LintelVio {
     Progress progress(err_, progressStyleFor(err_, quiet_), "processing", "frames", recording.expectedFrames());
     std::optional<Progress> refining;
     calibration_ = recording.rig();
-    const Rig& rig = calibration_;
-    return runOdometry(
-        recording, configuration, threads_,
-        [&](const Frame& frame, const FrameTracks& tracks, const WindowUpdate& update, std::size_t done) {
-          progress.update(done);
-          series_.add(tracks, update);
-          if (draw_tracks_.empty()) return;
-          char name[32];
-          std::snprintf(name, sizeof name, "%06zu.png", done - 1);
-          drawTracks((fs::path(draw_tracks_) / name).string(), frame, rig, tracks);
-        },
-        [&](double done) {
-          if (!refining) {
-            progress.clear();
-            refining.emplace(err_, progressStyleFor(err_, quiet_), "refining", "%", 100);
-          }
-          refining->update(static_cast<std::size_t>(100 * done));
-        });
+    RunOptions options;
+    options.threads = threads_;
+    options.progress = [&](const RunProgress& run) {
+      if (run.stage == RunStage::kFrames) return progress.update(run.done);
+      if (!refining) {
+        progress.clear();
+        refining.emplace(err_, progressStyleFor(err_, quiet_), "refining", "%", run.total);
+      }
+      refining->update(run.done);
+    };
+    options.observer = [&](const Frame& frame, const FrameTracks& tracks, const WindowUpdate& update,
+                           std::size_t done) {
+      series_.add(tracks, update);
+      if (draw_tracks_.empty()) return;
+      char name[32];
+      std::snprintf(name, sizeof name, "%06zu.png", done - 1);
+      drawTracks((fs::path(draw_tracks_) / name).string(), frame, calibration_, tracks);
+    };
+    return runOdometry(recording, configuration, options);
   }
 
-  void writeOutput(const OdometryResult& result, const Configuration& configuration,
-                   const std::vector<std::string>& warnings) {
+  void writeOutput(const OdometryResult& result, const std::vector<std::string>& warnings) {
     const fs::path out(output_);
-    LineMap map = result.map;
-    map.configuration = writeConfiguration(configuration);
-    writeTrajectoryAndMap(result, map);
+    {
+      const RunCosts::Once booking(costs_, "writing");
+      writeResults(result, output_);
+    }
     {
       const RunCosts::Once booking(costs_, "exports");
-      for (const std::string& extension : exports_)
-        exported_.push_back(exportMap(map, (out / ("map." + extension)).string()).files.front());
+      exported_ = writeExports(result.map, output_, exports_);
     }
     {
       const RunCosts::Once booking(costs_, "report");
-      AtomicFile::writeWhole((out / "report.html").string(), report(result, map.configuration, warnings));
+      AtomicFile::writeWhole((out / "report.html").string(), report(result, warnings));
     }
     AtomicFile::writeWhole((out / "stats.json").string(), statisticsJson(result, calibration_, costs_, warnings));
   }
 
-  void writeTrajectoryAndMap(const OdometryResult& result, const LineMap& map) {
-    const RunCosts::Once booking(costs_, "writing");
-    const fs::path out(output_);
-    AtomicFile::writeWhole((out / "trajectory.tum").string(), trajectoryText(result.trajectory));
-    std::error_code none;  // what an earlier run left must not pass for this run's
-    fs::remove(out / "trajectory_refined.tum", none);
-    if (result.refinement.accepted)
-      AtomicFile::writeWhole((out / "trajectory_refined.tum").string(), trajectoryText(result.refined_trajectory));
-    AtomicFile::writeWhole((out / "config.yaml").string(), map.configuration);
-    writeMap(map, (out / "map.lintel").string());
-  }
-
-  std::string report(const OdometryResult& result, const std::string& configuration,
-                     const std::vector<std::string>& warnings) const {
-    RunRecord record{input_, configuration, writeConfiguration({}), calibration_, costs_, warnings, {}, "", ""};
+  std::string report(const OdometryResult& result, const std::vector<std::string>& warnings) const {
+    RunRecord record{input_, result.map.configuration, writeConfiguration({}), calibration_, costs_, warnings, {}, "",
+                     ""};
     try {
       record.groundtruth = readGroundTruth(input_);
     } catch (const std::exception& error) {  // the run is good without it

@@ -12,6 +12,7 @@
 #include "VioTestRuns.h"
 #include "lintel/evaluation/TrajectoryErrors.h"
 #include "lintel/mapping/MapFile.h"
+#include "lintel/pipeline/Results.h"
 #include "lintel/simulation/Simulation.h"
 
 namespace lintel {
@@ -123,6 +124,72 @@ TEST_F(LintelVioTest, FollowsTheTruth) {
   EXPECT_LT(errors.position_m.rmse, 0.05);
 }
 
+class LintelVioCancelTest : public LintelVioTest {
+ protected:
+  /// The same run by the C++ interface, on one thread or two.
+  OdometryResult run(RunOptions options) {
+    Configuration configuration;
+    readConfiguration(eurocConfig(), configuration);
+    configuration.refinement.enabled = refine_;
+    return runOdometry(*openRecording(recording()), configuration, options);
+  }
+  static void expectSamePoses(const std::vector<OdometryPose>& poses, std::size_t number) {
+    const StampedPoses reference = readTrajectory(out("reference") + "/trajectory.tum");
+    ASSERT_LE(number, reference.size());
+    ASSERT_EQ(poses.size(), number);
+    for (std::size_t i = 0; i < number; ++i) {
+      EXPECT_EQ(poses[i].t_ns, reference[i].first);
+      EXPECT_LT((poses[i].T_w_b.p - reference[i].second.p).norm(), 1e-8) << "pose " << i;
+    }
+  }
+  bool refine_ = true;
+};
+
+TEST_F(LintelVioCancelTest, ARunCancelledOnItsWayKeepsTrajectoryAndMapUntilThen) {
+  for (const int threads : {1, 2}) {
+    std::size_t done = 0;
+    RunOptions options;
+    options.threads = threads;
+    options.progress = [&](const RunProgress& progress) {
+      EXPECT_EQ(progress.stage, RunStage::kFrames) << "there is no time for a refinement";
+      done = progress.done;
+    };
+    options.cancelled = [&] { return done >= 60; };
+    const OdometryResult result = run(options);
+    EXPECT_TRUE(result.cancelled);
+    EXPECT_EQ(result.statistics.frames, 60u);
+    EXPECT_EQ(result.refinement.verdict, "not refined: the run was cancelled");
+    EXPECT_TRUE(result.refined_trajectory.empty());
+    expectSamePoses(result.trajectory, result.statistics.frames_with_pose);
+    EXPECT_GT(result.trajectory.size(), 20u);
+    EXPECT_EQ(result.map.trajectory.size(), result.trajectory.size());
+    EXPECT_GT(result.map.keyframes.size(), 3u);
+    EXPECT_GT(result.map.lines.size(), 3u);
+    writeResults(result, out("cancelled"));
+    EXPECT_EQ(readMap(out("cancelled") + "/map.lintel").lines.size(), result.map.lines.size());
+  }
+}
+
+TEST_F(LintelVioCancelTest, ARefinementThatIsCancelledLeavesTheCausalMap) {
+  double refined = 0;
+  RunOptions options;
+  options.progress = [&](const RunProgress& progress) {
+    if (progress.stage == RunStage::kRefinement) refined = static_cast<double>(progress.done);
+  };
+  options.cancelled = [&] { return refined >= 30; };
+  const OdometryResult result = run(options);
+  refine_ = false;
+  const OdometryResult causal = run({});
+  EXPECT_TRUE(result.cancelled);
+  EXPECT_FALSE(causal.cancelled);
+  EXPECT_FALSE(result.refinement.accepted);
+  EXPECT_EQ(result.refinement.verdict, "not refined: the run was cancelled");
+  expectSamePoses(result.trajectory, causal.trajectory.size());
+  ASSERT_EQ(result.map.lines.size(), causal.map.lines.size());
+  for (std::size_t i = 0; i < causal.map.lines.size(); ++i)
+    EXPECT_EQ(result.map.lines[i].segment_w.start, causal.map.lines[i].segment_w.start);
+}
+
 TEST_F(LintelVioTest, ThreadsDoNotChangeAByte) {
   ASSERT_EQ(run(recording(), "threads2", {"--threads", "2"}).exit_code, 0);
   expectSameAsReference("threads2");
@@ -231,9 +298,11 @@ TEST_F(LintelVioTest, WrongCommandLinesAreUsage) {
                                              {recording(), "-o", out("usage"), "--from", "2", "--to", "1"},
                                              {recording(), "-o", out("usage"), "--from", "-2"},
                                              {recording(), "-o", out("usage"), "--threads", "0"},
+                                             {recording(), "-o", out("usage"), "--threads", "3"},
                                              {recording(), "-o", out("usage"), "--export", "glb,unheardof"},
                                              {recording(), "-o", out("usage"), "--unheard-of"}})
     EXPECT_EQ(runVio(arguments).exit_code, 2) << testing::PrintToString(arguments);
+  expectOneLine(runVio({recording(), "-o", out("usage"), "--threads", "64"}), "--threads");
   EXPECT_FALSE(fs::exists(out("usage")));
 }
 

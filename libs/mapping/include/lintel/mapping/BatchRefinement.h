@@ -64,8 +64,9 @@ struct RefinementReport {
   double moved_m = 0, turned_rad = 0;                    ///< most, of a keyframe
 };
 
-/// Told from time to time how much is done, in [0, 1].
-using RefinementProgress = std::function<void(double)>;
+/// Told at every iteration how much is done, in [0, 1]. What it answers below 1 says whether to go on: after `false`
+/// the refinement is not accepted.
+using RefinementProgress = std::function<bool(double)>;
 
 /// Full adjustment over all keyframes: poses, velocities, biases, calibration, points and lines; IMU between
 /// consecutive keyframes; robust losses. Landmarks that turn out to be the same are joined between the rounds: what was

@@ -15,7 +15,7 @@
 
 namespace lintel {
 
-/// One pose of the causal trajectory.
+/// One pose of a trajectory.
 struct OdometryPose {
   std::int64_t t_ns = 0;
   Pose T_w_b;
@@ -38,25 +38,45 @@ struct OdometryStatistics {
 };
 
 struct OdometryResult {
-  std::vector<OdometryPose> trajectory;          ///< causal
+  std::vector<OdometryPose> trajectory;          ///< causal: what was known when the frame had been processed
   std::vector<OdometryPose> refined_trajectory;  ///< empty when there was no refinement or it was not accepted
   RefinementReport refinement;
-  LineMap map;
+  LineMap map;                             ///< holds the configuration it was made with
   int lines_beside = 0;                    ///< known, but beside better seen ones: see map.spacing
   Rig rig;                                 ///< as refined
   CalibrationEstimate window_calibration;  ///< as the last window had it, before any batch refinement
   double time_offset_s = 0;
   OdometryStatistics statistics;
-  std::string error;  ///< why the recording ended early; empty when it was read to its end
+  bool cancelled =
+      false;          ///< RunOptions::cancelled ended the run: trajectory and map are those of the frames until then
+  std::string error;  ///< why the recording ended early; empty when it was read to its end or cancelled
 };
 
-/// Called for every frame, from the calling thread: the frame, its tracks, and how many are done.
+/// The two parts of a run that take time.
+enum class RunStage { kFrames, kRefinement };
+
+/// How much of a stage is done: frames of those that the recording is known to have (else `total` is 0), or percent of
+/// the refinement.
+struct RunProgress {
+  RunStage stage = RunStage::kFrames;
+  std::size_t done = 0, total = 0;
+};
+
+/// Called for every frame: the frame, its tracks, what the estimator made of it, and how many are done.
 using OdometryObserver = std::function<void(const Frame&, const FrameTracks&, const WindowUpdate&, std::size_t)>;
 
-/// Recording in, trajectory and map out. With `threads` > 1 tracking runs on a thread of its own; the result does not
-/// depend on it. A recording that breaks off gives what was computed until then, with `error` set.
-/// `refining` is told how much of the refinement after the last frame is done.
-OdometryResult runOdometry(Recording& recording, const Configuration& configuration, int threads,
-                           const OdometryObserver& observer, const RefinementProgress& refining = {});
+/// How a run is done; nothing of it changes trajectory or map, unless the run is cancelled. All functions are called
+/// from the calling thread and may be empty; what they throw ends the run and reaches the caller.
+struct RunOptions {
+  int threads = 2;  ///< 1: one stage after the other; 2: tracking on a thread of its own, beside estimation
+  std::function<void(const RunProgress&)> progress;
+  std::function<bool()> cancelled;  ///< asked before every frame and every iteration of the refinement: true ends both
+  OdometryObserver observer;
+};
+
+/// Recording and configuration in, trajectory and map out. A recording that breaks off gives what was computed until
+/// then, with `error` set. A cancelled run gives what was computed until then as well, with `cancelled` set; a
+/// refinement that had begun is given up. Throws std::invalid_argument when a parameter is out of range.
+OdometryResult runOdometry(Recording& recording, const Configuration& configuration, const RunOptions& options = {});
 
 }  // namespace lintel

@@ -9,10 +9,7 @@
 
 namespace lintel {
 
-/// The trajectory as TUM text: `t x y z qx qy qz qw`, seconds with 9 decimals.
-std::string trajectoryText(const std::vector<OdometryPose>& trajectory);
-
-/// Figures of a run as JSON (stats.json). `given`: the calibration that the recording came with.
+/// The figures of a run as JSON (stats.json of lintel-vio). `given`: the calibration that the recording came with.
 std::string statisticsJson(const OdometryResult& result, const Rig& given, const RunCosts& costs,
                            const std::vector<std::string>& warnings);
 

@@ -1,11 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "lintel/pipeline/VioOutput.h"
+#include "lintel/pipeline/RunStatistics.h"
 
 #include <sys/resource.h>
 
 #include <algorithm>
-#include <cinttypes>
-#include <cstdio>
 #include <nlohmann/json.hpp>
 
 namespace lintel {
@@ -102,19 +100,6 @@ Json cpuJson(const OdometryStatistics& statistics, const RunCosts& costs, double
 }
 
 }  // namespace
-
-std::string trajectoryText(const std::vector<OdometryPose>& trajectory) {
-  std::string text = "# timestamp tx ty tz qx qy qz qw\n";
-  char line[256];
-  for (const OdometryPose& pose : trajectory) {
-    const Eigen::Vector3d& p = pose.T_w_b.p;
-    const Eigen::Quaterniond& q = pose.T_w_b.q;
-    std::snprintf(line, sizeof line, "%" PRId64 ".%09" PRId64 " %.9f %.9f %.9f %.9f %.9f %.9f %.9f\n",
-                  pose.t_ns / 1000000000, pose.t_ns % 1000000000, p.x(), p.y(), p.z(), q.x(), q.y(), q.z(), q.w());
-    text += line;
-  }
-  return text;
-}
 
 std::string statisticsJson(const OdometryResult& result, const Rig& given, const RunCosts& costs,
                            const std::vector<std::string>& warnings) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "lintel/pipeline/VioOutput.h"
+#include "lintel/pipeline/RunStatistics.h"
 
 #include <gtest/gtest.h>
 
@@ -7,17 +7,6 @@
 
 namespace lintel {
 namespace {
-
-TEST(TrajectoryText, IsTumWithNineDecimals) {
-  const Pose pose{{0.5, 0.5, -0.5, 0.5}, {1.25, -2, 3e-9}};  // w x y z
-  EXPECT_EQ(trajectoryText({{1'403'636'579'763'555'584, pose}, {1'000'000'007, pose}}),
-            "# timestamp tx ty tz qx qy qz qw\n"
-            "1403636579.763555584 1.250000000 -2.000000000 0.000000003 0.500000000 -0.500000000 0.500000000 "
-            "0.500000000\n"
-            "1.000000007 1.250000000 -2.000000000 0.000000003 0.500000000 -0.500000000 0.500000000 0.500000000\n");
-}
-
-TEST(TrajectoryText, NoPosesAreAHeader) { EXPECT_EQ(trajectoryText({}), "# timestamp tx ty tz qx qy qz qw\n"); }
 
 TEST(StatisticsJson, SaysWhatTheRunCounted) {
   OdometryResult result;

@@ -1,0 +1,109 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "EstimationStage.h"
+
+#include <cstdio>
+
+#include "lintel/mapping/LineSpacing.h"
+
+namespace lintel {
+
+EstimationStage::EstimationStage(const Rig& rig, const Configuration& configuration, OdometryResult& result)
+    : rig_(rig),
+      configuration_(configuration),
+      estimator_(rig, configuration.estimator),
+      map_(rig, configuration.map),
+      refinement_(rig, configuration.estimator, configuration.map, configuration.refinement),
+      result_(result) {}
+
+WindowUpdate EstimationStage::process(const TrackedFrame& frame) {
+  OdometryStatistics& s = result_.statistics;
+  WindowUpdate update;
+  {
+    const StageClock::Scope scope(s.estimation);
+    update = estimator_.process(frame.tracks, frame.step.imu);
+  }
+  count(update);
+  {
+    const StageClock::Scope scope(s.mapping);
+    map_.add(update);
+  }
+  if (update.hasPose()) result_.trajectory.push_back({update.t_ns, update.T_w_b});
+  return update;
+}
+
+void EstimationStage::finish(const RefinementProgress& progress) {
+  const CalibrationEstimate calibration = result_.window_calibration = estimator_.calibration();
+  result_.rig = rig_;
+  result_.rig.camera = calibration.camera;
+  result_.rig.T_b_c = calibration.T_b_c;
+  result_.time_offset_s = calibration.time_offset_s;
+  map_.add(estimator_.finish());
+  map_.setCalibration(result_.rig, result_.time_offset_s);
+  finishMap(progress);
+  OdometryStatistics& s = result_.statistics;
+  s.keyframes = result_.map.keyframes.size();
+  if (s.window_frames == 0) return;
+  const auto n = static_cast<double>(s.window_frames);
+  for (double* mean : {&s.mean_points_used, &s.mean_lines_tracked, &s.mean_lines_placed, &s.mean_lines_used,
+                       &s.mean_lines_degenerate, &s.mean_lines_constrained, &s.mean_lines_through_epipole,
+                       &s.mean_lines_direction_unknown, &s.mean_lines_distance_unknown})
+    *mean /= n;
+}
+
+void EstimationStage::finishMap(const RefinementProgress& progress) {
+  MapMaterial material = map_.material();
+  const bool refine = configuration_.refinement.enabled && !material.keyframes.empty();
+  if (refine && !result_.cancelled) {
+    const StageClock::Scope scope(result_.statistics.refinement);
+    result_.refinement = refinement_.refine(material, progress);
+  } else {
+    const StageClock::Scope scope(result_.statistics.map_fitting);
+    if (refine) result_.refinement.verdict = "not refined: the run was cancelled";
+    prepareMaterial(configuration_.map, material);
+  }
+  if (result_.refinement.accepted) {
+    result_.rig = material.rig;
+    result_.time_offset_s = material.time_offset_s;
+    for (const auto& [t_ns, T_w_b] : material.trajectory) result_.refined_trajectory.push_back({t_ns, T_w_b});
+  }
+  result_.map = drawMap(configuration_.map, material);
+  result_.map.configuration = writeConfiguration(configuration_);
+  result_.lines_beside = spaceLines(configuration_.map, result_.map);
+}
+
+void EstimationStage::count(const WindowUpdate& update) {
+  OdometryStatistics& s = result_.statistics;
+  if (s.frames++ == 0) s.first_frame_ns = update.t_ns;
+  s.last_frame_ns = update.t_ns;
+  const double t_s = 1e-9 * static_cast<double>(update.t_ns - s.first_frame_ns);
+  if (update.hasPose()) {
+    ++s.frames_with_pose;
+    if (s.first_pose_s < 0) s.first_pose_s = t_s;
+  } else if (update.status == EstimatorStatus::kInitializing && update.reason != "between window frames") {
+    s.last_wait = update.reason;
+  }
+  if (update.status == EstimatorStatus::kLost) {
+    ++s.resets;
+    char text[64];
+    std::snprintf(text, sizeof text, "at %.2f s: ", t_s);
+    s.failures.push_back(text + update.reason);
+  }
+  if (update.status == EstimatorStatus::kTracking) countWindow(update);
+}
+
+/// Adds up what finish() divides by the number of windows.
+void EstimationStage::countWindow(const WindowUpdate& update) {
+  OdometryStatistics& s = result_.statistics;
+  ++s.window_frames;
+  s.mean_points_used += update.points_used;
+  s.mean_lines_tracked += update.lines_tracked;
+  s.mean_lines_placed += update.lines_placed;
+  s.mean_lines_used += update.lines_used;
+  s.mean_lines_degenerate += update.lines_degenerate;
+  s.mean_lines_constrained += update.lines_constrained;
+  s.mean_lines_through_epipole += update.lines_through_epipole;
+  s.mean_lines_direction_unknown += update.lines_direction_unknown;
+  s.mean_lines_distance_unknown += update.lines_distance_unknown;
+}
+
+}  // namespace lintel

@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "TrackingStage.h"
+#include "lintel/mapping/MapBuilder.h"
+#include "lintel/pipeline/Odometry.h"
+
+namespace lintel {
+
+/// Estimates a pose for every tracked frame, collects the map's material, and makes the map of it after the last frame.
+class EstimationStage {
+ public:
+  EstimationStage(const Rig& rig, const Configuration& configuration, OdometryResult& result);
+
+  /// Adds the frame to result and statistics.
+  WindowUpdate process(const TrackedFrame& frame);
+
+  /// Refines, unless the result is marked as cancelled, and draws the map.
+  void finish(const RefinementProgress& progress);
+
+ private:
+  void finishMap(const RefinementProgress& progress);
+  void count(const WindowUpdate& update);
+  void countWindow(const WindowUpdate& update);
+
+  Rig rig_;
+  const Configuration& configuration_;
+  Estimator estimator_;
+  MapBuilder map_;
+  const BatchRefinement refinement_;
+  OdometryResult& result_;
+};
+
+}  // namespace lintel

@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "lintel/pipeline/Results.h"
+
+#include <cinttypes>
+#include <cstdio>
+#include <filesystem>
+#include <stdexcept>
+
+#include "lintel/core/AtomicFile.h"
+#include "lintel/exporting/MapExport.h"
+#include "lintel/mapping/MapFile.h"
+
+namespace lintel {
+
+namespace fs = std::filesystem;
+
+std::vector<std::string> writeResults(const OdometryResult& result, const std::string& folder,
+                                      const std::vector<std::string>& exports) {
+  const fs::path out(folder);
+  std::error_code error;
+  fs::create_directories(out, error);
+  if (error) throw std::runtime_error(folder + ": cannot be made: " + error.message() + "; choose another folder");
+  AtomicFile::writeWhole((out / "trajectory.tum").string(), trajectoryText(result.trajectory));
+  fs::remove(out / "trajectory_refined.tum", error);  // what an earlier run left must not pass for this run's
+  if (result.refinement.accepted)
+    AtomicFile::writeWhole((out / "trajectory_refined.tum").string(), trajectoryText(result.refined_trajectory));
+  AtomicFile::writeWhole((out / "config.yaml").string(), result.map.configuration);
+  writeMap(result.map, (out / "map.lintel").string());
+  return writeExports(result.map, folder, exports);
+}
+
+std::vector<std::string> writeExports(const LineMap& map, const std::string& folder,
+                                      const std::vector<std::string>& exports) {
+  std::vector<std::string> files;
+  for (const std::string& extension : exports)
+    files.push_back(exportMap(map, (fs::path(folder) / ("map." + extension)).string()).files.front());
+  return files;
+}
+
+std::string trajectoryText(const std::vector<OdometryPose>& trajectory) {
+  std::string text = "# timestamp tx ty tz qx qy qz qw\n";
+  char line[256];
+  for (const OdometryPose& pose : trajectory) {
+    const Eigen::Vector3d& p = pose.T_w_b.p;
+    const Eigen::Quaterniond& q = pose.T_w_b.q;
+    std::snprintf(line, sizeof line, "%" PRId64 ".%09" PRId64 " %.9f %.9f %.9f %.9f %.9f %.9f %.9f\n",
+                  pose.t_ns / 1000000000, pose.t_ns % 1000000000, p.x(), p.y(), p.z(), q.x(), q.y(), q.z(), q.w());
+    text += line;
+  }
+  return text;
+}
+
+}  // namespace lintel
