@@ -56,7 +56,7 @@ class Estimator::Impl {
  public:
   Impl(const Rig& rig, const EstimatorParams& params)
       : rig_(rig),
-        params_(params),
+        params_(scaledTo(rig.camera, params)),
         noise_(scaledNoise(rig.imu_noise, params.factors)),
         initializer_(params_, rig.T_b_c),
         window_(rig) {}

@@ -5,7 +5,7 @@
 
 namespace lintel {
 
-/// Throws std::invalid_argument naming the parameter that is out of range.
-void checkParams(EstimatorParams params);
+/// Throws std::invalid_argument naming the parameter that is out of range or contradicts another one.
+void checkParams(const EstimatorParams& params);
 
 }  // namespace lintel

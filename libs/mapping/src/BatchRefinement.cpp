@@ -112,9 +112,13 @@ std::string objection(const MapMaterial& after, const EstimatorParams& estimator
 
 BatchRefinement::BatchRefinement(const Rig& calibrated, const EstimatorParams& estimator, const MapParams& map,
                                  const RefinementParams& params)
-    : calibrated_(calibrated), estimator_(estimator), map_(map), params_(params) {
-  if (!(params.sigma_scale >= 0.01 && params.sigma_scale <= 100))
-    throw std::invalid_argument(text("refinement.sigma_scale is %g, must be within 0.01 and 100", params.sigma_scale));
+    : calibrated_(calibrated),
+      estimator_(scaledTo(calibrated.camera, estimator)),
+      map_(scaledTo(calibrated.camera, map)),
+      params_(params) {
+  checkRanges(estimator, "estimator.");
+  checkRanges(map, "map.");
+  checkRanges(params, "refinement.");
   estimator_.factors.point_sigma_px *= params.sigma_scale;
   estimator_.factors.line_sigma_px *= params.sigma_scale;
 }

@@ -65,7 +65,10 @@ void orderById(std::vector<Record>& records) {
 
 }  // namespace
 
-MapBuilder::MapBuilder(const Rig& rig, const MapParams& params) : params_(params) { material_.rig = rig; }
+MapBuilder::MapBuilder(const Rig& rig, const MapParams& params) : params_(params) {
+  checkRanges(params, "map.");
+  material_.rig = rig;
+}
 
 void MapBuilder::add(const WindowUpdate& update) {
   if (update.hasPose()) material_.trajectory.emplace_back(update.t_ns, update.T_w_b);

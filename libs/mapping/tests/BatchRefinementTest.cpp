@@ -61,7 +61,7 @@ class BatchRefinementTest : public testing::Test {
       for (const LineObservation& o : frame.tracks.lines) {
         lines[o.id].triangulated = false;
         lines[o.id].id = o.id;
-        lines[o.id].sightings.push_back({i, {}, {}, o.start_px, o.end_px, 1.0, true});
+        lines[o.id].sightings.push_back({i, {}, {}, o.start_px, o.end_px, 1.0});
       }
     }
     for (auto& [id, point] : points) last.points.push_back(point);

@@ -15,9 +15,6 @@ namespace lintel {
 namespace {
 
 template <class T>
-constexpr bool isLeaf = std::is_arithmetic_v<T> || std::is_same_v<T, std::string>;
-
-template <class T>
 const char* typeName() {
   if (std::is_same_v<T, bool>) return "true or false";
   if (std::is_integral_v<T>) return "a whole number";
@@ -31,17 +28,22 @@ class Reader {
   Reader(const YAML::Node& node, std::string source, std::string path)
       : node_(node), source_(std::move(source)), path_(std::move(path)) {}
 
-  template <class T>
-  void operator()(const std::string& key, T& value) {
+  template <class T, class... Allowed>
+  void operator()(const std::string& key, T& value, const Allowed&... allowed) {
     known_.insert(key);
     const YAML::Node child = node_[key];
     if (!child) return;
-    if constexpr (isLeaf<T>) {
+    if constexpr (isParamValue<T>) {
       try {
         value = child.as<T>();
       } catch (const YAML::Exception&) {
         throw ConfigurationError(where(child) + path_ + key + " must be " + typeName<T>() + ", not '" +
                                  YAML::Dump(child) + "'");
+      }
+      try {
+        if constexpr (sizeof...(Allowed) == 1) checkAllowed(path_ + key, value, allowed...);
+      } catch (const std::invalid_argument& e) {
+        throw ConfigurationError(where(child) + e.what());
       }
     } else {
       if (!child.IsMap()) throw ConfigurationError(where(child) + path_ + key + " must hold keys of its own");
@@ -83,12 +85,12 @@ class Writer {
  public:
   Writer(YAML::Emitter& out) : out_(out) {}
 
-  template <class T>
-  void operator()(const std::string& key, T& value) {
+  template <class T, class... Allowed>
+  void operator()(const std::string& key, T& value, const Allowed&...) {
     out_ << YAML::Key << key << YAML::Value;
     if constexpr (std::is_floating_point_v<T>) {
       out_ << shortest(value);
-    } else if constexpr (isLeaf<T>) {
+    } else if constexpr (isParamValue<T>) {
       out_ << value;
     } else {
       out_ << YAML::BeginMap;

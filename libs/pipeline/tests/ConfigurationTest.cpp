@@ -9,6 +9,7 @@
 #include <filesystem>
 #include <fstream>
 #include <map>
+#include <regex>
 #include <type_traits>
 
 namespace lintel {
@@ -19,17 +20,23 @@ using testing::AllOf;
 using testing::HasSubstr;
 using testing::StartsWith;
 
-/// Every leaf of a configuration as `key.with.dots` and its bytes.
+/// Every leaf of a configuration as `key.with.dots` with its bytes and what is allowed; keys of numbers and texts
+/// apart.
 class Leaves {
  public:
   explicit Leaves(Configuration configuration) { configuration.fields(*this); }
 
-  template <class T>
-  void operator()(const std::string& key, T& value) {
-    if constexpr (std::is_arithmetic_v<T>) {
-      all_[path_ + key] = std::string(reinterpret_cast<const char*>(&value), sizeof value);
-    } else if constexpr (std::is_same_v<T, std::string>) {
-      all_[path_ + key] = value;
+  template <class T, class... Allowed>
+  void operator()(const std::string& key, T& value, const Allowed&... allowed) {
+    if constexpr (isParamValue<T>) {
+      allowed_[path_ + key] = allowedText(allowed...);
+      if constexpr (std::is_same_v<T, std::string>) {
+        all_[path_ + key] = value;
+        texts_.push_back(path_ + key);
+      } else {
+        all_[path_ + key] = std::string(reinterpret_cast<const char*>(&value), sizeof value);
+        if constexpr (!std::is_same_v<T, bool>) numbers_.push_back(path_ + key);
+      }
     } else {
       const std::string before = path_;
       path_ += key + ".";
@@ -38,10 +45,14 @@ class Leaves {
     }
   }
   const std::map<std::string, std::string>& all() const { return all_; }
+  const std::map<std::string, std::string>& allowed() const { return allowed_; }
+  const std::vector<std::string>& numbers() const { return numbers_; }
+  const std::vector<std::string>& texts() const { return texts_; }
 
  private:
   std::string path_;
-  std::map<std::string, std::string> all_;
+  std::map<std::string, std::string> all_, allowed_;
+  std::vector<std::string> numbers_, texts_;
 };
 
 class ConfigurationTest : public testing::Test {
@@ -124,6 +135,41 @@ TEST_F(ConfigurationTest, AValueOfTheWrongTypeNamesFileLineAndWhatItMustBe) {
   EXPECT_THAT(complaintOf("- a\n- b\n"), HasSubstr("holds no keys"));
 }
 
+TEST_F(ConfigurationTest, AValueBeyondItsLimitsNamesFileLineAndLimits) {
+  EXPECT_EQ(complaintOf("estimator:\n  keyframes: 2\n"), file_ + ":2: estimator.keyframes = 2, must be from 4 to 100");
+  EXPECT_EQ(complaintOf("tracking: {lines: {mode: magic}}\n"),
+            file_ + ":1: tracking.lines.mode = magic, must be one of flow, descriptor");
+  EXPECT_EQ(setComplaintOf("map.coverage=1.5"), "--set map.coverage=1.5:1: map.coverage = 1.5, must be from 0 to 1");
+}
+
+TEST_F(ConfigurationTest, NoKeyTakesAnAbsurdValue) {
+  const Leaves leaves{Configuration{}};
+  EXPECT_GT(leaves.numbers().size(), 100u);
+  for (const std::string& key : leaves.numbers())
+    for (const char* absurd : {".nan", ".inf", "-.inf", "-1", "-1e-3", "1e30", "2147483647"})
+      EXPECT_THAT(setComplaintOf(key + "=" + absurd), HasSubstr(key + (std::string(absurd) == "-1" ? " = -1," : "")))
+          << absurd;
+  for (const std::string& key : leaves.texts())
+    EXPECT_THAT(setComplaintOf(key + "=magic"), HasSubstr(key + " = magic, must be one of "));
+}
+
+TEST_F(ConfigurationTest, TheDefaultsAreAllowed) {
+  Configuration c;
+  EXPECT_NO_THROW(checkRanges(c, ""));
+  EXPECT_THAT(complaintOf(writeConfiguration(c)), "no complaint");
+}
+
+/// The tables of the document: | `key` | default | allowed | meaning |
+TEST_F(ConfigurationTest, TheDocumentTellsWhatIsAllowed) {
+  const std::regex row("^\\| \\**`([a-z0-9_.]+)`\\** \\| [^|]* \\| ([^|]*) \\| .* \\|$");
+  std::ifstream document(LINTEL_SOURCE_DIR "/doc/configuration.md");
+  std::map<std::string, std::string> documented;
+  std::smatch match;
+  for (std::string line; std::getline(document, line);)
+    if (std::regex_match(line, match, row)) documented[match[1]] = match[2];
+  EXPECT_EQ(documented, Leaves(Configuration{}).allowed());
+}
+
 TEST_F(ConfigurationTest, WhatIsNoYamlNamesFileAndLine) {
   EXPECT_THAT(complaintOf("estimator:\n  keyframes: [1, 2\nmap: }\n"),
               AllOf(StartsWith(file_ + ":"), HasSubstr("is not YAML")));
@@ -153,9 +199,9 @@ TEST_F(ConfigurationTest, WrongOptionsAreNamed) {
 TEST_F(ConfigurationTest, WrittenAndReadIsTheSameToTheLastBit) {
   Configuration c;
   c.estimator.factors.point_sigma_px = 0.1 + 0.2;
-  c.estimator.landmarks.max_depth_m = 1e300;
+  c.estimator.landmarks.max_depth_m = 1e5 / 3;
   c.map.min_length_m = std::nextafter(0.05, 1.0);
-  c.estimator.keyframes = -7;
+  c.estimator.keyframes = 17;
   c.estimator.calibration.refine_camera = !c.estimator.calibration.refine_camera;
   const std::string text = writeConfiguration(c);
   EXPECT_EQ(Leaves(read(text)).all(), Leaves(c).all());

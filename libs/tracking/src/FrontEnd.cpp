@@ -9,11 +9,36 @@
 #include "GyroPrediction.h"
 #include "ImagePyramid.h"
 #include "LineTracker.h"
-#include "ParamsCheck.h"
 #include "PointTracker.h"
 #include "StageTimer.h"
 
 namespace lintel {
+namespace {
+
+void checkParams(const Rig& rig, const FrontEndParams& params) {
+  checkAllowed("camera width", rig.camera.width, Range{64, 20000});
+  checkAllowed("camera height", rig.camera.height, Range{64, 20000});
+  checkAllowed("camera fx", rig.camera.fx, Range{1, 1e6});
+  checkAllowed("camera fy", rig.camera.fy, Range{1, 1e6});
+  checkAllowed("features", params.features, FrontEndParams::kFeatures);
+  checkRanges(params, "tracking.");
+  checkAllowed("tracking.lines.min_length_px", params.lines.min_length_px, Range{params.lines.keep_length_px, 10000});
+  checkAllowed("tracking.lines.max_samples", params.lines.max_samples,
+               Range{static_cast<double>(params.lines.min_samples), 100});
+}
+
+void checkFrame(const Rig& rig, const Frame& frame) {
+  const std::string at = "front end: frame " + std::to_string(frame.t_ns);
+  if (!frame.image) throw std::invalid_argument(at + " has no image");
+  const GrayImage& image = *frame.image;
+  if (image.width != rig.camera.width || image.height != rig.camera.height ||
+      image.pixels.size() != static_cast<std::size_t>(image.width) * static_cast<std::size_t>(image.height))
+    throw std::invalid_argument(at + " is " + std::to_string(image.width) + "x" + std::to_string(image.height) +
+                                ", the rig's camera is " + std::to_string(rig.camera.width) + "x" +
+                                std::to_string(rig.camera.height));
+}
+
+}  // namespace
 
 struct FrontEnd::Impl {
   Impl(const Rig& rig_in, const FrontEndParams& params)
@@ -46,7 +71,7 @@ struct FrontEnd::Impl {
 
 FrontEnd::FrontEnd(const Rig& rig, const FrontEndParams& params) {
   checkParams(rig, params);
-  impl_ = std::make_unique<Impl>(rig, params);
+  impl_ = std::make_unique<Impl>(rig, scaledTo(rig.camera, params));
 }
 FrontEnd::~FrontEnd() = default;
 FrontEnd::FrontEnd(FrontEnd&&) noexcept = default;
@@ -71,8 +96,6 @@ FrameTracks FrontEnd::process(const Frame& frame, const ImuBatch& imu_since_last
   return tracks;
 }
 
-Eigen::Matrix3d FrontEnd::lastRotation() const { return impl_->gyro.R_c1_c0().toRotationMatrix(); }
-Eigen::Vector3d FrontEnd::gyroBias() const { return impl_->gyro.bias(); }
 const FrontEndStatistics& FrontEnd::statistics() const { return impl_->statistics; }
 
 }  // namespace lintel

@@ -148,8 +148,10 @@ void Initializer::adjust(SlidingWindow& window) const {
   CalibrationParams frozen = params_.calibration;
   frozen.refine_extrinsics = frozen.refine_camera = frozen.refine_time_offset = false;
   LandmarkParams loose = params_.landmarks;
+  // The first poses are rough: their errors are angles, and so are these limits.
+  const double scale = pixelScale(window.camera());
   for (int round = 0; round < 3; ++round) {
-    loose.point_max_error_px = round == 0 ? 30 : round == 1 ? 8 : params_.landmarks.point_max_error_px;
+    loose.point_max_error_px = round == 0 ? 30 * scale : round == 1 ? 8 * scale : params_.landmarks.point_max_error_px;
     triangulatePoints(window, loose, params_.factors.point_sigma_px);
     WindowFactors factors(window, params_.factors);
     factors.addPriors();
@@ -157,7 +159,7 @@ void Initializer::adjust(SlidingWindow& window) const {
     factors.addPoints();
     factors.addGauge();
     solveWindow(window, factors.factors(), frozen, {20});
-    loose.point_max_error_px = round == 0 ? 8 : params_.landmarks.point_max_error_px;
+    loose.point_max_error_px = round == 0 ? 8 * scale : params_.landmarks.point_max_error_px;
     for (auto& [id, track] : window.points)
       if (track.triangulated && reprojectionError(window, track) > loose.point_max_error_px) track.triangulated = false;
     for (WindowFrame& frame : window.frames)

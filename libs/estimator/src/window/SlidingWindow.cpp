@@ -53,7 +53,7 @@ void SlidingWindow::addFrame(WindowFrame frame, const FrameTracks& tracks) {
     LineTrack& track = lines[o.id];
     track.id = o.id;
     track.sightings.push_back({frame.id, makeObservation(camera_, o.start), makeObservation(camera_, o.end), o.start_px,
-                               o.end_px, o.sigma_px, o.detected});
+                               o.end_px, o.sigma_px});
   }
   frames.push_back(std::move(frame));
 }

@@ -39,7 +39,6 @@ TEST(SlidingWindow, AddFrameKeepsWhatTheFrameSaw) {
   line.start_px = {10, 20};
   line.end_px = {300, 40};
   line.sigma_px = 0.3;
-  line.detected = false;
   tracks.lines = {line};
   WindowFrame frame;
   frame.id = 3;
@@ -51,7 +50,6 @@ TEST(SlidingWindow, AddFrameKeepsWhatTheFrameSaw) {
   ASSERT_EQ(window.lines.at(6).sightings.size(), 1u);
   EXPECT_EQ(window.lines.at(6).sightings[0].end_px, line.end_px);
   EXPECT_EQ(window.lines.at(6).sightings[0].sigma_px, 0.3);
-  EXPECT_FALSE(window.lines.at(6).sightings[0].detected);
 }
 
 TEST(SlidingWindow, AnEstimateStaysWhereItIsWhenItsFirstFrameLeaves) {

@@ -3,6 +3,8 @@
 
 #include <string>
 
+#include "lintel/core/ParamRange.h"
+
 namespace lintel {
 
 /// How observations become residuals.
@@ -19,15 +21,15 @@ struct FactorParams {
 
   template <class F>
   void fields(F&& field) {
-    field("point_sigma_px", point_sigma_px);
-    field("point_loss_width", point_loss_width);
-    field("line_sigma_px", line_sigma_px);
-    field("line_loss_width", line_loss_width);
+    field("point_sigma_px", point_sigma_px, Range{0.01, 100});
+    field("point_loss_width", point_loss_width, Range{0.1, 1000000});
+    field("line_sigma_px", line_sigma_px, Range{0.01, 100});
+    field("line_loss_width", line_loss_width, Range{0.1, 1000000});
     field("adaptive_weights", adaptive_weights);
-    field("gyro_noise_scale", gyro_noise_scale);
-    field("accel_noise_scale", accel_noise_scale);
-    field("gyro_walk_scale", gyro_walk_scale);
-    field("accel_walk_scale", accel_walk_scale);
+    field("gyro_noise_scale", gyro_noise_scale, Range{0.001, 10000});
+    field("accel_noise_scale", accel_noise_scale, Range{0.001, 10000});
+    field("gyro_walk_scale", gyro_walk_scale, Range{0.001, 10000});
+    field("accel_walk_scale", accel_walk_scale, Range{0.001, 10000});
   }
 };
 
@@ -48,12 +50,12 @@ struct CalibrationParams {
     field("refine_extrinsics", refine_extrinsics);
     field("refine_camera", refine_camera);
     field("refine_time_offset", refine_time_offset);
-    field("extrinsic_rotation_sigma_rad", extrinsic_rotation_sigma_rad);
-    field("extrinsic_translation_sigma_m", extrinsic_translation_sigma_m);
-    field("focal_sigma_px", focal_sigma_px);
-    field("centre_sigma_px", centre_sigma_px);
-    field("distortion_sigma", distortion_sigma);
-    field("time_offset_sigma_s", time_offset_sigma_s);
+    field("extrinsic_rotation_sigma_rad", extrinsic_rotation_sigma_rad, Range{1e-9, 1});
+    field("extrinsic_translation_sigma_m", extrinsic_translation_sigma_m, Range{1e-9, 10});
+    field("focal_sigma_px", focal_sigma_px, ReferencePixels{1e-9, 1000});
+    field("centre_sigma_px", centre_sigma_px, ReferencePixels{1e-9, 1000});
+    field("distortion_sigma", distortion_sigma, Range{1e-9, 10});
+    field("time_offset_sigma_s", time_offset_sigma_s, Range{1e-9, 1});
   }
 };
 
@@ -69,13 +71,13 @@ struct LandmarkParams {
 
   template <class F>
   void fields(F&& field) {
-    field("point_min_observations", point_min_observations);
-    field("point_max_relative_sigma", point_max_relative_sigma);
-    field("point_max_error_px", point_max_error_px);
-    field("max_depth_m", max_depth_m);
-    field("min_depth_m", min_depth_m);
-    field("line_min_observations", line_min_observations);
-    field("line_max_error_px", line_max_error_px);
+    field("point_min_observations", point_min_observations, Range{2, 1000});
+    field("point_max_relative_sigma", point_max_relative_sigma, Range{0.0001, 100});
+    field("point_max_error_px", point_max_error_px, Range{0.1, 1000});
+    field("max_depth_m", max_depth_m, Range{0.1, 1000000});
+    field("min_depth_m", min_depth_m, Range{0.001, 1000});
+    field("line_min_observations", line_min_observations, Range{2, 1000});
+    field("line_max_error_px", line_max_error_px, Range{0.1, 1000});
   }
 };
 
@@ -93,15 +95,15 @@ struct DegeneracyParams {
 
   template <class F>
   void fields(F&& field) {
-    field("lines", lines);
-    field("test", test);
-    field("max_sigma_direction_rad", max_sigma_direction_rad);
-    field("max_sigma_distance", max_sigma_distance);
-    field("max_epipole_angle_rad", max_epipole_angle_rad);
-    field("structural_sigma_rad", structural_sigma_rad);
-    field("structural_loss_width", structural_loss_width);
-    field("max_misfit", max_misfit);
-    field("min_group", min_group);
+    field("lines", lines, OneOf{"use drop constrain"});
+    field("test", test, OneOf{"epipole observability both"});
+    field("max_sigma_direction_rad", max_sigma_direction_rad, Range{0.0001, 10});
+    field("max_sigma_distance", max_sigma_distance, Range{0.0001, 100});
+    field("max_epipole_angle_rad", max_epipole_angle_rad, Range{0, 1.5});
+    field("structural_sigma_rad", structural_sigma_rad, Range{1e-5, 1});
+    field("structural_loss_width", structural_loss_width, Range{0.1, 1000000});
+    field("max_misfit", max_misfit, Range{0.1, 1000});
+    field("min_group", min_group, Range{1, 1000});
   }
 };
 
@@ -121,17 +123,17 @@ struct InitializerParams {
 
   template <class F>
   void fields(F&& field) {
-    field("min_frames", min_frames);
-    field("max_frames", max_frames);
-    field("min_parallax_px", min_parallax_px);
-    field("max_error_px", max_error_px);
-    field("max_scale_sigma", max_scale_sigma);
-    field("max_bias_accel", max_bias_accel);
-    field("bias_gyro_sigma", bias_gyro_sigma);
-    field("bias_accel_sigma", bias_accel_sigma);
-    field("static_disparity_px", static_disparity_px);
-    field("static_gyro_std", static_gyro_std);
-    field("static_accel_std", static_accel_std);
+    field("min_frames", min_frames, Range{4, 1000});
+    field("max_frames", max_frames, Range{4, 1000});
+    field("min_parallax_px", min_parallax_px, ReferencePixels{0.1, 1000});
+    field("max_error_px", max_error_px, Range{0.1, 1000});
+    field("max_scale_sigma", max_scale_sigma, Range{0.0001, 100});
+    field("max_bias_accel", max_bias_accel, Range{0.001, 100});
+    field("bias_gyro_sigma", bias_gyro_sigma, Range{1e-6, 10});
+    field("bias_accel_sigma", bias_accel_sigma, Range{1e-6, 100});
+    field("static_disparity_px", static_disparity_px, Range{0, 100});
+    field("static_gyro_std", static_gyro_std, Range{0, 10});
+    field("static_accel_std", static_accel_std, Range{0, 100});
   }
 };
 
@@ -146,12 +148,12 @@ struct FailureParams {
 
   template <class F>
   void fields(F&& field) {
-    field("min_points", min_points);
-    field("max_blind_frames", max_blind_frames);
-    field("max_bias_accel", max_bias_accel);
-    field("max_bias_gyro", max_bias_gyro);
-    field("max_step_m", max_step_m);
-    field("max_step_rad", max_step_rad);
+    field("min_points", min_points, Range{1, 1000});
+    field("max_blind_frames", max_blind_frames, Range{1, 100000});
+    field("max_bias_accel", max_bias_accel, Range{0.001, 1000});
+    field("max_bias_gyro", max_bias_gyro, Range{0.001, 100});
+    field("max_step_m", max_step_m, Range{0.001, 1000000});
+    field("max_step_rad", max_step_rad, Range{0.001, 10});
   }
 };
 
@@ -173,14 +175,14 @@ struct EstimatorParams {
 
   template <class F>
   void fields(F&& field) {
-    field("every_nth_frame", every_nth_frame);
-    field("keyframes", keyframes);
-    field("keyframe_parallax_px", keyframe_parallax_px);
-    field("keyframe_min_tracked", keyframe_min_tracked);
-    field("max_keyframe_interval_s", max_keyframe_interval_s);
-    field("max_iterations", max_iterations);
-    field("rest_disparity_px", rest_disparity_px);
-    field("rest_velocity_sigma", rest_velocity_sigma);
+    field("every_nth_frame", every_nth_frame, Range{1, 100});
+    field("keyframes", keyframes, Range{4, 100});
+    field("keyframe_parallax_px", keyframe_parallax_px, ReferencePixels{0.1, 1000});
+    field("keyframe_min_tracked", keyframe_min_tracked, Range{1, 10000});
+    field("max_keyframe_interval_s", max_keyframe_interval_s, Range{0.1, 1000000});
+    field("max_iterations", max_iterations, Range{1, 1000});
+    field("rest_disparity_px", rest_disparity_px, Range{0, 100});
+    field("rest_velocity_sigma", rest_velocity_sigma, Range{1e-6, 10});
     field("factors", factors);
     field("calibration", calibration);
     field("landmarks", landmarks);

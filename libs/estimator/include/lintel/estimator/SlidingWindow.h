@@ -57,7 +57,6 @@ struct LineSighting {
   NormalisedObservation start, end;
   Eigen::Vector2d start_px = Eigen::Vector2d::Zero(), end_px = Eigen::Vector2d::Zero();
   double sigma_px = 1;
-  bool detected = true;
 };
 
 /// A point: homogeneous, world axes, relative to `origin_w` (PointFactor.h).

@@ -35,20 +35,20 @@ struct RefinementParams {
   template <class F>
   void fields(F&& field) {
     field("enabled", enabled);
-    field("rounds", rounds);
-    field("max_iterations", max_iterations);
+    field("rounds", rounds, Range{1, 100});
+    field("max_iterations", max_iterations, Range{1, 1000});
     field("lines", lines);
     field("groups", groups);
-    field("sigma_scale", sigma_scale);
-    field("min_views", min_views);
-    field("max_views", max_views);
-    field("line_max_sigma_direction_rad", line_max_sigma_direction_rad);
-    field("line_max_relative_sigma", line_max_relative_sigma);
-    field("held_out_share", held_out_share);
-    field("max_moved_share", max_moved_share);
-    field("max_moved_m", max_moved_m);
-    field("max_turned_rad", max_turned_rad);
-    field("max_imu_error", max_imu_error);
+    field("sigma_scale", sigma_scale, Range{0.01, 100});
+    field("min_views", min_views, Range{2, 1000});
+    field("max_views", max_views, Range{0, 100000});
+    field("line_max_sigma_direction_rad", line_max_sigma_direction_rad, Range{0.0001, 10});
+    field("line_max_relative_sigma", line_max_relative_sigma, Range{0.0001, 100});
+    field("held_out_share", held_out_share, Range{0, 0.5});
+    field("max_moved_share", max_moved_share, Range{0, 10});
+    field("max_moved_m", max_moved_m, Range{0, 1000});
+    field("max_turned_rad", max_turned_rad, Range{0, 3.2});
+    field("max_imu_error", max_imu_error, Range{0.1, 1000});
   }
 };
 

@@ -13,6 +13,7 @@ namespace lintel {
 /// Collects what leaves the window, for the map.
 class MapBuilder {
  public:
+  /// Throws std::invalid_argument, naming the parameter, when one is out of range.
   MapBuilder(const Rig& rig, const MapParams& params);
 
   /// Updates in the order of time.

@@ -3,6 +3,8 @@
 
 #include <string>
 
+#include "lintel/core/ParamRange.h"
+
 namespace lintel {
 
 /// When landmarks are the same.
@@ -23,15 +25,15 @@ struct MergeParams {
   void fields(F&& field) {
     field("lines", lines);
     field("points", points);
-    field("max_angle_rad", max_angle_rad);
-    field("max_offset_m", max_offset_m);
-    field("max_relative_offset", max_relative_offset);
-    field("max_gap_m", max_gap_m);
-    field("max_relative_gap", max_relative_gap);
-    field("max_error_px", max_error_px);
-    field("max_drift_px", max_drift_px);
-    field("min_separation_px", min_separation_px);
-    field("point_max_error_px", point_max_error_px);
+    field("max_angle_rad", max_angle_rad, Range{0.0001, 1.5});
+    field("max_offset_m", max_offset_m, Range{0, 100});
+    field("max_relative_offset", max_relative_offset, Range{0, 10});
+    field("max_gap_m", max_gap_m, Range{0, 1000});
+    field("max_relative_gap", max_relative_gap, Range{0, 100});
+    field("max_error_px", max_error_px, Range{0.01, 1000});
+    field("max_drift_px", max_drift_px, ReferencePixels{0, 1000});
+    field("min_separation_px", min_separation_px, Range{0.1, 1000});
+    field("point_max_error_px", point_max_error_px, Range{0.01, 1000});
   }
 };
 
@@ -42,8 +44,8 @@ struct SpacingParams {
 
   template <class F>
   void fields(F&& field) {
-    field("min_m", min_m);
-    field("min_relative", min_relative);
+    field("min_m", min_m, Range{0, 100});
+    field("min_relative", min_relative, Range{0, 10});
   }
 };
 
@@ -55,9 +57,9 @@ struct GroupParams {
 
   template <class F>
   void fields(F&& field) {
-    field("max_angle_rad", max_angle_rad);
-    field("min_lines", min_lines);
-    field("min_share", min_share);
+    field("max_angle_rad", max_angle_rad, Range{0.0001, 1.5});
+    field("min_lines", min_lines, Range{2, 10000});
+    field("min_share", min_share, Range{0, 1});
   }
 };
 
@@ -83,17 +85,17 @@ struct MapParams {
 
   template <class F>
   void fields(F&& field) {
-    field("min_observations", min_observations);
-    field("min_length_m", min_length_m);
-    field("min_depth_m", min_depth_m);
-    field("max_error_px", max_error_px);
-    field("view_max_error_px", view_max_error_px);
-    field("min_inlier_share", min_inlier_share);
-    field("max_sigma_direction_rad", max_sigma_direction_rad);
-    field("max_sigma_m", max_sigma_m);
-    field("max_relative_sigma", max_relative_sigma);
-    field("point_max_relative_sigma", point_max_relative_sigma);
-    field("coverage", coverage);
+    field("min_observations", min_observations, Range{2, 1000});
+    field("min_length_m", min_length_m, Range{0, 1000});
+    field("min_depth_m", min_depth_m, Range{0, 1000});
+    field("max_error_px", max_error_px, Range{0.01, 1000});
+    field("view_max_error_px", view_max_error_px, Range{0.01, 1000});
+    field("min_inlier_share", min_inlier_share, Range{0, 1});
+    field("max_sigma_direction_rad", max_sigma_direction_rad, Range{0.0001, 10});
+    field("max_sigma_m", max_sigma_m, Range{1e-6, 1000});
+    field("max_relative_sigma", max_relative_sigma, Range{1e-6, 100});
+    field("point_max_relative_sigma", point_max_relative_sigma, Range{1e-6, 100});
+    field("coverage", coverage, Range{0, 1});
     field("merge", merge);
     field("groups", groups);
     field("spacing", spacing);

@@ -21,7 +21,7 @@ struct Configuration {
 
   template <class F>
   void fields(F&& field) {
-    field("features", tracking.features);
+    field("features", tracking.features, FrontEndParams::kFeatures);
     field("tracking", tracking);
     field("estimator", estimator);
     field("map", map);
@@ -29,7 +29,7 @@ struct Configuration {
   }
 };
 
-/// A key that does not exist or a value of the wrong type: one line naming file and key.
+/// A key that does not exist, a value of the wrong type or beyond its limits: one line naming file and key.
 class ConfigurationError : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;

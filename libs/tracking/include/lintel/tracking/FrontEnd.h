@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <Eigen/Core>
 #include <memory>
 
 #include "lintel/core/Frame.h"
@@ -28,12 +27,6 @@ class FrontEnd {
   /// it is empty the last rotation rate is assumed to go on. Throws std::invalid_argument when the image does not have
   /// the rig's size, or the frame is not later than the one before.
   FrameTracks process(const Frame& frame, const ImuBatch& imu_since_last);
-
-  /// Rotation of the last step as seen by gyro and points together, R_c1_c0; identity at the start.
-  Eigen::Matrix3d lastRotation() const;
-
-  /// Gyro bias as estimated from the points' motion, body frame [rad/s].
-  Eigen::Vector3d gyroBias() const;
 
   const FrontEndStatistics& statistics() const;
 

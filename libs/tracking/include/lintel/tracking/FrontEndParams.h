@@ -3,6 +3,8 @@
 
 #include <string>
 
+#include "lintel/core/ParamRange.h"
+
 namespace lintel {
 
 /// The image pyramid that points and lines share.
@@ -13,9 +15,9 @@ struct PyramidParams {
 
   template <class F>
   void fields(F&& field) {
-    field("levels", levels);
+    field("levels", levels, Range{1, 8});
     field("equalise", equalise);
-    field("clip_limit", clip_limit);
+    field("clip_limit", clip_limit, Range{0.1, 1000});
   }
 };
 
@@ -36,18 +38,18 @@ struct PointTrackerParams {
 
   template <class F>
   void fields(F&& field) {
-    field("max_points", max_points);
-    field("min_distance_px", min_distance_px);
-    field("min_quality", min_quality);
-    field("detect_every_n", detect_every_n);
-    field("window_px", window_px);
-    field("max_iterations", max_iterations);
-    field("forward_backward_px", forward_backward_px);
-    field("epipolar_px", epipolar_px);
-    field("drift_px", drift_px);
-    field("drift_frames", drift_frames);
-    field("border_px", border_px);
-    field("initial_gyro_bias_sigma", initial_gyro_bias_sigma);
+    field("max_points", max_points, Range{1, 10000});
+    field("min_distance_px", min_distance_px, ReferencePixels{1, 1000});
+    field("min_quality", min_quality, Range{0, 1});
+    field("detect_every_n", detect_every_n, Range{1, 1000});
+    field("window_px", window_px, Range{5, 51});
+    field("max_iterations", max_iterations, Range{1, 1000});
+    field("forward_backward_px", forward_backward_px, Range{0.001, 100});
+    field("epipolar_px", epipolar_px, Range{0.01, 1000});
+    field("drift_px", drift_px, Range{0.01, 1000});
+    field("drift_frames", drift_frames, Range{2, 1000});
+    field("border_px", border_px, Range{0, 100});
+    field("initial_gyro_bias_sigma", initial_gyro_bias_sigma, Range{1e-6, 10});
   }
 };
 
@@ -78,32 +80,33 @@ struct LineTrackerParams {
 
   template <class F>
   void fields(F&& field) {
-    field("mode", mode);
-    field("detector", detector);
-    field("gradient_threshold", gradient_threshold);
-    field("detect_every_n", detect_every_n);
-    field("max_lines", max_lines);
-    field("sightings_before_use", sightings_before_use);
-    field("min_length_px", min_length_px);
-    field("keep_length_px", keep_length_px);
-    field("window_px", window_px);
-    field("flow_levels", flow_levels);
-    field("max_iterations", max_iterations);
-    field("min_samples", min_samples);
-    field("max_samples", max_samples);
-    field("max_jump_px", max_jump_px);
-    field("refine_px", refine_px);
-    field("grow_px", grow_px);
-    field("merge_angle_rad", merge_angle_rad);
-    field("merge_distance_px", merge_distance_px);
-    field("max_frames_without_detection", max_frames_without_detection);
-    field("border_px", border_px);
-    field("descriptor_distance", descriptor_distance);
+    field("mode", mode, OneOf{"flow descriptor"});
+    field("detector", detector, OneOf{"edge_drawing lsd"});
+    field("gradient_threshold", gradient_threshold, Range{1, 255});
+    field("detect_every_n", detect_every_n, Range{1, 1000});
+    field("max_lines", max_lines, Range{1, 10000});
+    field("sightings_before_use", sightings_before_use, Range{1, 1000});
+    field("min_length_px", min_length_px, ReferencePixels{20, 10000});
+    field("keep_length_px", keep_length_px, ReferencePixels{16, 10000});
+    field("window_px", window_px, Range{5, 51});
+    field("flow_levels", flow_levels, Range{1, 8});
+    field("max_iterations", max_iterations, Range{1, 1000});
+    field("min_samples", min_samples, Range{3, 100});
+    field("max_samples", max_samples, Range{3, 100});
+    field("max_jump_px", max_jump_px, ReferencePixels{0.5, 1000});
+    field("refine_px", refine_px, Range{0.5, 8});
+    field("grow_px", grow_px, ReferencePixels{0, 1000});
+    field("merge_angle_rad", merge_angle_rad, Range{0.001, 1});
+    field("merge_distance_px", merge_distance_px, Range{0.1, 100});
+    field("max_frames_without_detection", max_frames_without_detection, Range{0, 1000000});
+    field("border_px", border_px, Range{1, 100});
+    field("descriptor_distance", descriptor_distance, Range{0, 256});
   }
 };
 
 /// What the front end is made of. Every value is checked by the FrontEnd's constructor.
 struct FrontEndParams {
+  static constexpr OneOf kFeatures{"points points_lines"};
   std::string features = "points_lines";  ///< or points, alone; of the whole program: not among the keys of tracking
   PyramidParams pyramid;
   PointTrackerParams points;
