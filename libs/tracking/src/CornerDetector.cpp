@@ -10,7 +10,7 @@
 namespace lintel {
 namespace {
 
-constexpr int kBlock_px = 8;  ///< one candidate a block
+constexpr int kBlock_px = 8;  ///< one candidate a block of 8 x 8 pixels, a fraction of the distance between points
 
 struct Candidate {
   int x, y;

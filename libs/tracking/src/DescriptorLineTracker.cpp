@@ -2,16 +2,87 @@
 #include "DescriptorLineTracker.h"
 
 #include <algorithm>
-
-#include "LineObservations.h"
-#include "StageTimer.h"
+#include <cmath>
+#include <opencv2/line_descriptor.hpp>
 
 namespace lintel {
 namespace {
 
-constexpr double kDetectorSigma_px = 1.0;
+constexpr double kGateAngle_rad = 0.2;     ///< 11 degrees: what perspective turns in a frame
+constexpr double kGateDistance_px = 60;    ///< between their lines, at the reference focal length: parallax of a frame
+constexpr double kMinOverlap = 0.3;        ///< of the shorter one
+constexpr double kDetectorSigma_px = 1.0;  ///< of a detection at half resolution
+
+cv::line_descriptor::KeyLine keyLine(const LineCamera& camera, const ImageLine& line, const cv::Size& size, int index) {
+  const Eigen::Vector2d a = camera.toImage(line.start), b = camera.toImage(line.end);
+  cv::line_descriptor::KeyLine key;
+  key.startPointX = key.sPointInOctaveX = static_cast<float>(a.x());
+  key.startPointY = key.sPointInOctaveY = static_cast<float>(a.y());
+  key.endPointX = key.ePointInOctaveX = static_cast<float>(b.x());
+  key.endPointY = key.ePointInOctaveY = static_cast<float>(b.y());
+  key.lineLength = static_cast<float>((b - a).norm());
+  key.angle = static_cast<float>(std::atan2(b.y() - a.y(), b.x() - a.x()));
+  key.octave = 0;
+  key.class_id = index;  // the descriptor's row; -1 would crash OpenCV
+  key.numOfPixels = std::max(static_cast<int>(key.lineLength), 1);
+  key.pt = {0.5f * (key.startPointX + key.endPointX), 0.5f * (key.startPointY + key.endPointY)};
+  key.response = key.lineLength / static_cast<float>(std::max(size.width, size.height));
+  key.size = static_cast<float>(std::abs((b.x() - a.x()) * (b.y() - a.y())));
+  return key;
+}
+
+struct Pair {
+  std::size_t from, to;
+  int distance;
+};
 
 }  // namespace
+
+struct LineMatcher::Engine {
+  cv::Ptr<cv::line_descriptor::BinaryDescriptor> descriptor =
+      cv::line_descriptor::BinaryDescriptor::createBinaryDescriptor();
+};
+
+LineMatcher::LineMatcher(const LineCamera& camera, const LineTrackerParams& params)
+    : camera_(camera), params_(params), engine_(std::make_unique<Engine>()) {}
+
+LineMatcher::~LineMatcher() = default;
+
+cv::Mat LineMatcher::describe(const cv::Mat& image, const std::vector<ImageLine>& lines) const {
+  cv::Mat descriptors;
+  if (lines.empty()) return descriptors;
+  std::vector<cv::line_descriptor::KeyLine> keys;
+  for (std::size_t i = 0; i < lines.size(); ++i)
+    keys.push_back(keyLine(camera_, lines[i], image.size(), static_cast<int>(i)));
+  engine_->descriptor->compute(image, keys, descriptors);
+  return descriptors;
+}
+
+std::vector<std::optional<std::size_t>> LineMatcher::match(const std::vector<ImageLine>& expected,
+                                                           const cv::Mat& from_descriptors,
+                                                           const std::vector<ImageLine>& to,
+                                                           const cv::Mat& to_descriptors) const {
+  std::vector<Pair> pairs;
+  for (std::size_t f = 0; f < expected.size(); ++f)
+    for (std::size_t t = 0; t < to.size(); ++t) {
+      const LineRelation relation = relate(expected[f], to[t]);
+      if (relation.angle_rad > kGateAngle_rad || relation.distance_px > camera_.scaled(kGateDistance_px) ||
+          relation.overlap_px < kMinOverlap * std::min(expected[f].length(), to[t].length()))
+        continue;
+      const int distance = static_cast<int>(cv::norm(from_descriptors.row(static_cast<int>(f)),
+                                                     to_descriptors.row(static_cast<int>(t)), cv::NORM_HAMMING));
+      if (distance <= params_.descriptor_distance) pairs.push_back({f, t, distance});
+    }
+  std::stable_sort(pairs.begin(), pairs.end(), [](const Pair& a, const Pair& b) { return a.distance < b.distance; });
+  std::vector<std::optional<std::size_t>> matches(to.size());
+  std::vector<char> used(expected.size(), 0);
+  for (const Pair& pair : pairs) {
+    if (used[pair.from] || matches[pair.to]) continue;
+    used[pair.from] = 1;
+    matches[pair.to] = pair.from;
+  }
+  return matches;
+}
 
 DescriptorLineTracker::DescriptorLineTracker(const Rig& rig, const LineTrackerParams& params)
     : params_(params), camera_(rig.camera), detector_(camera_, params), matcher_(camera_, params) {}
@@ -34,11 +105,7 @@ void DescriptorLineTracker::process(const ImagePyramid& pyramid, const GyroPredi
   const std::vector<ImageLine> detected = detect(pyramid, statistics.lines);
   const cv::Mat descriptors = matcher_.describe(pyramid.image(), detected);
   std::vector<ImageLine> expected;
-  const auto turned = [&](const Eigen::Vector2d& u) -> Eigen::Vector2d {
-    const Eigen::Vector3d ray = gyro.R_c1_c0() * (u / camera_.focal()).homogeneous();
-    return camera_.focal() * ray.head<2>() / std::max(ray.z(), 0.1);
-  };
-  for (const Track& track : tracks_) expected.push_back({turned(track.line.start), turned(track.line.end)});
+  for (const Track& track : tracks_) expected.push_back(camera_.turned(track.line, gyro.R_c1_c0()));
   const auto matches = matcher_.match(expected, descriptors_, detected, descriptors);
 
   std::vector<Track> tracks;

@@ -4,7 +4,8 @@
 namespace lintel {
 namespace {
 
-constexpr double kRotationSigma_rad = 1e-3;  ///< of the chained rotations of half a second
+constexpr double kRotationSigma_rad =
+    1e-3;  ///< of the chained rotations of half a second: half a pixel at the reference focal length
 
 }  // namespace
 

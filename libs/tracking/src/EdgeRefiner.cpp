@@ -5,19 +5,22 @@
 #include <array>
 #include <cmath>
 
-#include "EdgeProfile.h"
+#include "EdgeAppearance.h"
 
 namespace lintel {
 namespace {
 
-constexpr double kStep_px = 4;             ///< between samples along the line
-constexpr double kMaxSteps = 50;           ///< on a long line they lie further apart
+// All lengths are pixels of the image, whatever the focal length: what counts is the sampling, the blur and the noise.
+constexpr double kStep_px = 4;             ///< between samples along the line: blur makes nearer ones alike
+constexpr double kMaxSteps = 50;           ///< on a long line they lie further apart: it is known well by as many
 constexpr float kWeak = 0.3f;              ///< of the line's usual gradient: less is another edge, or none
+constexpr float kSecond = 0.4f;            ///< of the strongest gradient of a profile: less is no candidate
 constexpr float kMinGradient = 32 * 2.0f;  ///< 2 grey levels a pixel, in units of gradientsAcross()
-constexpr double kInlier_px = 0.8;         ///< of a sample's edge from the fitted line
-constexpr double kMinSupport = 0.5;
-constexpr double kFloor_px = 0.25;  ///< systematic: blur, sampling, lens model
-constexpr double kBlur_px = 1;      ///< a blurred edge is predicted that much worse
+constexpr double kInlier_px = 0.8;         ///< of a sample's edge from the fitted line: three times its noise
+constexpr double kMinSupport = 0.5;        ///< of the samples
+constexpr double kFloor_px = 0.25;         ///< systematic error of an edge: blur, sampling, lens model
+constexpr double kBlur_px = 1;             ///< a blurred edge is predicted less exactly by so much
+constexpr double kMaxTilt_px = 3;          ///< between the ends, of the edge from its prediction
 
 /// Edge candidates across the line at one place along it.
 struct Sample {
@@ -36,7 +39,7 @@ struct Fit {
 };
 
 /// Local maxima of the profile, the two strongest, by parabola.
-void findPeaks(const EdgeProfile& profile, int reach, Sample& sample) {
+void findPeaks(const GradientProfile& profile, int reach, Sample& sample) {
   for (int i = 1; i <= 2 * reach + 1; ++i) {
     const auto k = static_cast<std::size_t>(i);
     const float here = profile[k], before = profile[k - 1], after = profile[k + 1];
@@ -50,7 +53,7 @@ void findPeaks(const EdgeProfile& profile, int reach, Sample& sample) {
     sample.gradient[place] = here;
     sample.offset[place] = offset;
   }
-  sample.candidates = (sample.gradient[0] > 0) + (sample.gradient[1] > 0.4f * sample.gradient[0]);
+  sample.candidates = (sample.gradient[0] > 0) + (sample.gradient[1] > kSecond * sample.gradient[0]);
 }
 
 /// Gradient that the line usually has; 0 without any edge.
@@ -75,21 +78,27 @@ void dropWeak(Sample& sample, float usual) {
 class Profiler {
  public:
   Profiler(const LineCamera& camera, const cv::Mat& image, double scale, const ImageLine& line)
-      : camera_(camera), image_(image), scale_(scale), line_(line), d_(line.direction()), n_(line.normal()) {}
+      : camera_(camera),
+        image_(image),
+        scale_(scale),
+        line_(line),
+        d_(line.direction()),
+        n_(line.normal()),
+        step_valid_px_(camera.scaled(16)) {}
 
   /// Candidates at `s` along the line, `reach` level pixels to both sides of `centre_px` off it; false outside the
   /// image.
   bool look(double s, double centre_px, int reach, Sample& sample) {
     const Eigen::Vector2d u = line_.start + s * d_ + centre_px * n_;
     if (!camera_.mayBeSeen(u)) return false;
-    if (std::abs(s - step_at_) > kStepValid_px) {
+    if (std::abs(s - step_at_) > step_valid_px_) {
       step_ = camera_.imageJacobian(u) * n_;
       step_at_ = s;
       stride_ = step_.norm();
     }
     const Eigen::Vector2d px = camera_.toImage(u);
     if (!camera_.camera().contains(px, scale_ * ((reach + 1) * std::max(stride_, 1.0) + 2))) return false;
-    EdgeProfile profile;
+    GradientProfile profile;
     gradientsAcross(image_, px / scale_, step_, stride_, reach, profile);  // of the level: there a step is scale px
     sample = {};
     sample.s = s;
@@ -99,13 +108,12 @@ class Profiler {
   }
 
  private:
-  static constexpr double kStepValid_px = 16;  ///< along the line: the lens changes slowly
-
   const LineCamera& camera_;
   const cv::Mat& image_;
   double scale_;
   const ImageLine& line_;
   Eigen::Vector2d d_, n_, step_{0, 0};  ///< step_: one undistorted pixel across the line, in the image
+  double step_valid_px_;                ///< along the line: the lens changes slowly over the angle
   double step_at_ = -1e9, stride_ = 1;
 };
 
@@ -138,12 +146,12 @@ double nearest(const Sample& sample, const Fit& fit, double& offset) {
 
 /// Votes over shifts and tilts around the prediction; among equals the nearer to it wins.
 Fit vote(const std::vector<Sample>& samples, double length, double search_px) {
-  constexpr double kBin_px = 0.5;
+  constexpr double kBin_px = 0.5;  // votes go to three bins: about twice the inliers' limit
   const int bins = 2 * static_cast<int>(std::ceil(search_px / kBin_px)) + 1;
   Fit best;
   double best_score = -1;
   std::vector<double> votes;
-  for (const double tilt : {0.0, -1.5, 1.5, -3.0, 3.0}) {
+  for (const double tilt : {0.0, -0.5 * kMaxTilt_px, 0.5 * kMaxTilt_px, -kMaxTilt_px, kMaxTilt_px}) {
     votes.assign(static_cast<std::size_t>(bins) + 2, 0.0);  // one more at both ends spares the checks
     for (const Sample& sample : samples)
       for (int c = 0; c < sample.candidates; ++c) {
@@ -159,7 +167,7 @@ Fit vote(const std::vector<Sample>& samples, double length, double search_px) {
     for (int bin = 0; bin < bins; ++bin) {
       const double shift = kBin_px * (bin - bins / 2);
       const double score = votes[static_cast<std::size_t>(bin) + 1] *
-                           (1.0 - 0.25 * (std::abs(shift) + 0.5 * std::abs(tilt)) / (search_px + 1.5));
+                           (1.0 - 0.25 * (std::abs(shift) + 0.5 * std::abs(tilt)) / (search_px + 0.5 * kMaxTilt_px));
       if (score > best_score) {
         best_score = score;
         best = {shift - 0.5 * tilt, tilt / length};
@@ -205,7 +213,7 @@ int firstSupported(const std::vector<Sample>& samples, int from, int end, int st
 }
 
 /// Walks outward from `s` by `step_px` while the edge goes on, over at most one place without it; returns how far.
-/// What lies beyond the segment has no say in the fit: an edge that meets it at an acute angle would turn it.
+/// What lies beyond the segment does not change the fit: an edge that meets it at an acute angle would turn it.
 double grow(Profiler& profiler, const Fit& fit, double s, double step_px, double limit_px, float usual,
             double tolerance_px) {
   double reached = s;
@@ -272,7 +280,7 @@ std::optional<ImageLine> EdgeRefiner::orient(const cv::Mat& image, const ImageLi
     if (!camera_.sees(u, 4)) continue;
     const Eigen::Vector2d px = camera_.toImage(u), step = (camera_.imageJacobian(u) * n).normalized();
     float strongest = 0;
-    EdgeProfile profile;
+    GradientProfile profile;
     gradientsAcross(image, px, step, 1, 1, profile);
     for (int k = 0; k < 5; ++k)
       if (const float g = profile[static_cast<std::size_t>(k)]; std::abs(g) > std::abs(strongest)) strongest = g;

@@ -3,21 +3,22 @@
 
 #include <algorithm>
 
-#include "LineObservations.h"
-#include "StageTimer.h"
-
 namespace lintel {
 namespace {
 
 constexpr double kSupportWithoutFlow = 0.7;  ///< an edge found without optical flow must be a clear one
-constexpr double kSupportOfNew = 0.7;        ///< new lines are chosen, old ones are kept
+constexpr double kSupportOfNew = 0.7;        ///< of a new line: there are more candidates than places
 constexpr double kSlack = 1.5;               ///< of a jump's limit: the edge is not where optical flow ended
-constexpr double kNoise_px = 0.35;           ///< of an end across the line, from frame to frame
-constexpr double kSureDepth_px = 1.0;        ///< depths that say less are not asked
-constexpr double kFade = 0.8;                ///< of a drift, per frame
-constexpr double kMaxDrift_px = 4;           ///< a line that drifts further follows another edge
-constexpr double kJump_px = 2.5;             ///< so far from where it was expected a line must look as before
-constexpr double kSame_px = 1.0;             ///< one edge as seen twice in the same image
+constexpr double kFade = 0.8;                ///< of a drift, per frame: its memory is five frames
+
+// Pixels of the image, whatever the focal length: they are multiples of the error with which an edge is found.
+constexpr double kNoise_px = 0.35;  ///< of an end across the line, from frame to frame
+constexpr double kSureDepth_px =
+    1.0;                            ///< depths that predict the line less exactly are not used: three times the noise
+constexpr double kMaxDrift_px = 4;  ///< a line that drifts further follows another edge: a dozen times the noise
+constexpr double kJump_px = 2.5;    ///< so far from where it was expected a line must look as before
+constexpr double kSame_px = 1.0;    ///< one edge as seen twice in the same image
+constexpr double kWithoutFlow_px = 2;  ///< by which a line may be farther off when optical flow did not find it
 
 }  // namespace
 
@@ -26,7 +27,7 @@ FlowLineTracker::FlowLineTracker(const Rig& rig, const LineTrackerParams& params
       camera_(rig.camera),
       detector_(camera_, params),
       flow_(camera_, params),
-      merger_(params),
+      merger_(params, camera_.scaled(1)),
       refiner_(camera_) {}
 
 void FlowLineTracker::process(const ImagePyramid& pyramid, const GyroPrediction& gyro, const PointMotion& points,
@@ -105,17 +106,18 @@ std::vector<ImageLine> FlowLineTracker::mergeDetections(const ImagePyramid& pyra
 /// Puts a track on the edge that was found for it; false when that moves or looks as another edge would.
 bool FlowLineTracker::moveTo(const ImagePyramid& pyramid, const ImageLine& line, const StepTranslation& step,
                              Track& track) const {
-  const Eigen::Vector2d surprise = normalMotion(track.expected, line);
-  const double surprise_px = surprise.cwiseAbs().maxCoeff();
-  if (track.motion && surprise_px > kSlack * track.limit_px) return false;
-  const auto sides = sidesOf(camera_, pyramid.image(), line);
-  if (track.motion && surprise_px > kJump_px && sides && track.sides && !maybeSame(*sides, *track.sides)) return false;
+  const Eigen::Vector2d deviation = normalMotion(track.expected, line);
+  const double deviation_px = deviation.cwiseAbs().maxCoeff();
+  if (track.motion && deviation_px > kSlack * track.limit_px) return false;
+  const auto sides = sideLevels(camera_, pyramid.image(), line);
+  if (track.motion && deviation_px > kJump_px && sides && track.sides && !maybeSameEdge(*sides, *track.sides))
+    return false;
   if (sides) track.sides = sides;
   const double noise_px = std::max(kNoise_px, track.typical_px);
   if (track.carried) {
     const bool sure = track.carried->sigma_px.maxCoeff() < kSureDepth_px;
     track.drift *= kFade;
-    if (sure) track.drift += surprise * (kNoise_px / noise_px);
+    if (sure) track.drift += deviation * (kNoise_px / noise_px);
     if (track.drift.cwiseAbs().maxCoeff() > kMaxDrift_px) return false;
     track.depth = observe(*track.carried, track.turned, line, step.t_c1(), camera_.focal(), noise_px);
   } else {
@@ -132,7 +134,7 @@ void FlowLineTracker::refine(const ImagePyramid& pyramid, const StepTranslation&
   std::vector<Track> kept;
   for (Track& track : tracks_) {
     // Without flow the prediction is worse, and the edge may lie further off.
-    const double search_px = track.by_flow ? params_.refine_px : params_.refine_px + 2;
+    const double search_px = track.by_flow ? params_.refine_px : params_.refine_px + kWithoutFlow_px;
     const auto refined = refiner_.refine(pyramid, track.line, search_px, params_.grow_px);
     if (!refined || refined->line.length() < params_.keep_length_px ||
         (!track.by_flow && refined->support < kSupportWithoutFlow)) {

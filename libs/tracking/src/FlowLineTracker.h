@@ -3,8 +3,8 @@
 
 #include <vector>
 
+#include "EdgeAppearance.h"
 #include "EdgeRefiner.h"
-#include "EdgeSides.h"
 #include "LineDetector.h"
 #include "LineFlow.h"
 #include "LineMerger.h"
@@ -33,7 +33,7 @@ class FlowLineTracker : public LineTracker {
     std::optional<LineDepth> depth;
     Eigen::Vector2d drift{0, 0};            ///< of its ends from where its depth brings them, summed up, fading
     std::optional<Eigen::Vector2d> motion;  ///< of its ends beyond the rotation, see CarriedLine
-    std::optional<EdgeSides> sides;         ///< when last seen
+    std::optional<SideLevels> sides;        ///< when last seen
     double sigma_px = 1;
     int length = 0;      ///< frames in which it was published
     int sightings = 1;   ///< frames in which the detector saw it

@@ -10,7 +10,6 @@
 #include "ImagePyramid.h"
 #include "LineTracker.h"
 #include "PointTracker.h"
-#include "StageTimer.h"
 
 namespace lintel {
 namespace {

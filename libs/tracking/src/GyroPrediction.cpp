@@ -8,7 +8,7 @@
 namespace lintel {
 namespace {
 
-constexpr double kForget = 0.98;             ///< per frame: the bias walks, and an early mistake must fade
+constexpr double kForget = 0.98;             ///< of the information, per frame: the bias walks, early errors must fade
 constexpr double kRotationNoise_rad = 5e-4;  ///< of an integrated step: gyro noise, timing, exposure
 constexpr double kUnknownRate = 1.0;         ///< [rad/s] how far constant rotation may be wrong without gyro
 constexpr double kMinBiasSigma = 1e-3;       ///< [rad/s] the bias is never trusted further than this
@@ -33,6 +33,13 @@ bool GyroPrediction::predict(const ImuBatch& imu, double dt_s) {
       from_gyro_ ? (R_b_c_.conjugate() * R_b0_b1.conjugate() * R_b_c_).normalized() : expRotation(rate_c_ * dt_s);
   rate_c_ = logRotation(R_c1_c0_) / dt_s;
   return from_gyro_;
+}
+
+cv::Point2f GyroPrediction::turnedPixel(const PinholeRadtan& camera, const Eigen::Vector2d& x0) const {
+  const Eigen::Vector3d f1 = R_c1_c0_ * x0.homogeneous();
+  if (f1.z() < 0.1) return {-1e4f, -1e4f};
+  const Eigen::Vector2d px = camera.toPixel(f1.head<2>() / f1.z());
+  return {static_cast<float>(px.x()), static_cast<float>(px.y())};
 }
 
 Eigen::Matrix3d GyroPrediction::information() const {

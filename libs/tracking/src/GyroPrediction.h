@@ -3,14 +3,15 @@
 
 #include <Eigen/Core>
 #include <Eigen/Geometry>
+#include <opencv2/core.hpp>
 
 #include "lintel/core/Frame.h"
 #include "lintel/core/Rig.h"
 
 namespace lintel {
 
-/// Predicts how the camera turned between two frames from the gyroscope, whose bias (up to 0.1 rad/s, more than 2 px a
-/// frame) it learns from what the points say afterwards.
+/// Predicts how the camera turned between two frames from the gyroscope. Its bias (up to 0.1 rad/s, more than 2 px a
+/// frame) is estimated from the motion of the points.
 class GyroPrediction {
  public:
   GyroPrediction(const Rig& rig, double initial_bias_sigma);
@@ -22,13 +23,18 @@ class GyroPrediction {
   /// The predicted (after `correct`: corrected) rotation of the step.
   const Eigen::Quaterniond& R_c1_c0() const { return R_c1_c0_; }
 
+  /// Where the normalised point `x0` of frame 0 is seen in frame 1 when the camera only turned [px]; far outside the
+  /// image when it is behind the camera.
+  cv::Point2f turnedPixel(const PinholeRadtan& camera, const Eigen::Vector2d& x0) const;
+
   /// How far the prediction may be off: information of its error rotation vector, camera frame c1 [1/rad^2].
   Eigen::Matrix3d information() const;
 
-  /// What the points saw: R_true = Exp(delta) * R_predicted, with the information of delta (camera frame c1).
+  /// The rotation as estimated from the points: R_true = Exp(delta) * R_predicted, with the information of delta
+  /// (camera frame c1).
   void correct(const Eigen::Vector3d& delta, const Eigen::Matrix3d& information);
 
-  /// Body frame [rad/s].
+  /// Estimated gyroscope bias, body frame [rad/s].
   const Eigen::Vector3d& bias() const { return bias_; }
 
  private:

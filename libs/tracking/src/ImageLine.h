@@ -2,8 +2,9 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <opencv2/core.hpp>
+#include <Eigen/Geometry>
 #include <optional>
+#include <vector>
 
 #include "lintel/geometry/PinholeRadtan.h"
 
@@ -30,6 +31,9 @@ class LineCamera {
   explicit LineCamera(const PinholeRadtan& camera);
 
   double focal() const { return focal_; }
+  /// A length that stands for an angle, given in pixels at the reference focal length (core/ParamRange.h), in pixels of
+  /// this camera.
+  double scaled(double reference_px) const { return pixel_scale_ * reference_px; }
   const PinholeRadtan& camera() const { return camera_; }
 
   Eigen::Vector2d fromImage(const Eigen::Vector2d& px) const { return focal_ * camera_.normalise(px); }
@@ -42,11 +46,14 @@ class LineCamera {
   bool sees(const Eigen::Vector2d& u, double border_px) const;
   /// The part of `line` that the image sees; empty when there is none.
   std::optional<ImageLine> clip(const ImageLine& line, double border_px) const;
+  /// Where `line` of the camera c0 would be seen in c1 had the camera only turned.
+  ImageLine turned(const ImageLine& line, const Eigen::Quaterniond& R_c1_c0) const;
 
  private:
   PinholeRadtan camera_;
   double focal_;
-  double max_radius_;  ///< of undistorted pixels in the image, with a little room
+  double pixel_scale_;
+  double max_radius_ = 0;  ///< of undistorted pixels in the image, with a little room
 };
 
 /// How two segments lie to each other.
@@ -56,5 +63,16 @@ struct LineRelation {
   double overlap_px;   ///< of the projections on the first line; negative: the gap between them
 };
 LineRelation relate(const ImageLine& line, const ImageLine& other);
+
+/// A line fitted to points some of which are wrong.
+struct RobustLine {
+  ImageLine line;            ///< through the first and last inlier
+  std::vector<char> inlier;  ///< per point
+  int inliers = 0;
+};
+
+/// The line that most points lie on (every pair is tried: meant for about ten points), refitted by total least squares.
+/// Empty with fewer than 3 inliers or less than half of the points.
+std::optional<RobustLine> fitRobustLine(const std::vector<Eigen::Vector2d>& points, double tolerance_px);
 
 }  // namespace lintel

@@ -5,21 +5,22 @@
 #include <cmath>
 #include <opencv2/imgproc.hpp>
 #include <opencv2/ximgproc/edge_drawing.hpp>
-#include <stdexcept>
 
 namespace lintel {
 namespace {
 
-constexpr double kJoinAngle_rad = 0.035;  ///< 2 degrees
-constexpr double kJoinDistance_px = 2.0;
-constexpr double kJoinGap_px = 15;
+constexpr double kJoinAngle_rad = 0.035;  ///< 2 degrees: how exactly a piece of 30 px is known
+constexpr double kJoinDistance_px = 2.0;  ///< of the image: detections at half resolution are good to one pixel
+constexpr double kJoinGap_px = 15;        ///< between pieces of one edge, at the reference focal length
+constexpr double kPiece = 0.3;            ///< of a new line's least length: shorter pieces are not worth joining
+constexpr int kAnchorThreshold = 4;       ///< of edge_drawing: by how much an anchor's gradient exceeds its neighbours'
+constexpr int kLeastPiece_px = 8;         ///< of edge_drawing, at half resolution: less is noise
 
 /// Joins `other` to `line` when both are pieces of one edge.
-bool join(ImageLine& line, const ImageLine& other) {
+bool join(ImageLine& line, const ImageLine& other, double gap_px) {
   if (std::abs(line.normal().dot(other.start - line.start)) > kJoinDistance_px) return false;  // most, quickly
   const LineRelation relation = relate(line, other);
-  if (relation.angle_rad > kJoinAngle_rad || relation.distance_px > kJoinDistance_px ||
-      relation.overlap_px < -kJoinGap_px)
+  if (relation.angle_rad > kJoinAngle_rad || relation.distance_px > kJoinDistance_px || relation.overlap_px < -gap_px)
     return false;
   const Eigen::Vector2d d = line.direction();
   if (d.dot(other.start - line.start) < 0) line.start = other.start;
@@ -32,11 +33,11 @@ void sortLongestFirst(std::vector<ImageLine>& lines) {
                    [](const ImageLine& a, const ImageLine& b) { return a.length() > b.length(); });
 }
 
-std::vector<ImageLine> joined(std::vector<ImageLine> pieces) {
+std::vector<ImageLine> joined(std::vector<ImageLine> pieces, double gap_px) {
   sortLongestFirst(pieces);
   std::vector<ImageLine> lines;
   for (const ImageLine& piece : pieces)
-    if (std::none_of(lines.begin(), lines.end(), [&](ImageLine& line) { return join(line, piece); }))
+    if (std::none_of(lines.begin(), lines.end(), [&](ImageLine& line) { return join(line, piece, gap_px); }))
       lines.push_back(piece);
   sortLongestFirst(lines);
   return lines;
@@ -53,15 +54,14 @@ LineDetector::LineDetector(const LineCamera& camera, const LineTrackerParams& pa
     : camera_(camera), params_(params), refiner_(camera), engine_(std::make_unique<Engine>()) {
   if (params_.detector == "lsd") {
     engine_->lsd = cv::createLineSegmentDetector(cv::LSD_REFINE_NONE, 1.0);
-  } else if (params_.detector == "edge_drawing") {
+  } else {
     engine_->edge_drawing = cv::ximgproc::createEdgeDrawing();
     cv::ximgproc::EdgeDrawing::Params& p = engine_->edge_drawing->params;
     p.EdgeDetectionOperator = cv::ximgproc::EdgeDrawing::SOBEL;
     p.GradientThresholdValue = params_.gradient_threshold;
-    p.AnchorThresholdValue = 4;
-    p.MinLineLength = std::max(8, static_cast<int>(0.3 * params_.min_length_px));  // pieces are joined later
-  } else {
-    throw std::invalid_argument("front end: lines.detector = " + params_.detector + ", must be edge_drawing or lsd");
+    p.AnchorThresholdValue = kAnchorThreshold;
+    p.MinLineLength =
+        std::max(kLeastPiece_px, static_cast<int>(kPiece * params_.min_length_px));  // pieces are joined later
   }
 }
 
@@ -85,11 +85,11 @@ std::vector<cv::Vec4f> LineDetector::detectRaw(const ImagePyramid& pyramid) {
 std::vector<ImageLine> LineDetector::detect(const ImagePyramid& pyramid) {
   std::vector<ImageLine> pieces;
   for (const cv::Vec4f& s : detectRaw(pyramid)) {
-    if (std::hypot(s[2] - s[0], s[3] - s[1]) < 0.3 * params_.min_length_px) continue;
+    if (std::hypot(s[2] - s[0], s[3] - s[1]) < kPiece * params_.min_length_px) continue;
     const ImageLine line{camera_.fromImage({s[0], s[1]}), camera_.fromImage({s[2], s[3]})};
     if (const auto oriented = refiner_.orient(pyramid.image(), line)) pieces.push_back(*oriented);
   }
-  return joined(std::move(pieces));
+  return joined(std::move(pieces), camera_.scaled(kJoinGap_px));
 }
 
 }  // namespace lintel

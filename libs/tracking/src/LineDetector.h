@@ -16,7 +16,6 @@ namespace lintel {
 /// them on the edge.
 class LineDetector {
  public:
-  /// Throws std::invalid_argument for an unknown params.detector.
   LineDetector(const LineCamera& camera, const LineTrackerParams& params);
   ~LineDetector();
 
@@ -24,10 +23,10 @@ class LineDetector {
   /// end joined; longer ones first.
   std::vector<ImageLine> detect(const ImagePyramid& pyramid);
 
-  /// What the detector itself says, raw image pixels of full resolution (x0 y0 x1 y1).
+ private:
+  /// What OpenCV's detector finds, image pixels of full resolution (x0 y0 x1 y1).
   std::vector<cv::Vec4f> detectRaw(const ImagePyramid& pyramid);
 
- private:
   struct Engine;
   const LineCamera& camera_;
   LineTrackerParams params_;

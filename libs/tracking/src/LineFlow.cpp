@@ -5,21 +5,22 @@
 #include <cmath>
 
 #include "PatchFlow.h"
-#include "Prediction.h"
-#include "RobustLine.h"
 
 namespace lintel {
 namespace {
 
-constexpr double kMinTexture = 1e-3;  ///< a patch on a plain edge has nearly none along it, and is welcome
-constexpr double kSettled_px = 0.03;  ///< of optical flow
-constexpr double kSpacing_px = 15;    ///< between samples, when the line is neither short nor long
-constexpr double kFitTolerance_px = 1.5;
-constexpr float kNear_px = 20;          ///< points nearer than this weigh alike
-constexpr double kMaxSurprise_px = 40;  ///< flow further than this from the guess is a mistake
-constexpr double kSureDepth_px = 1.5;   ///< a line whose depth says less is expected to move as before
-constexpr double kCalm_px = 2;          ///< a line may always be this far from where it is expected
-constexpr double kTimesTypical = 4;     ///< and this many times as far as the other lines of the frame are
+// Limits of the image itself: noise, blur, and how exactly a patch or an edge is found, whatever the camera sees.
+constexpr double kMinTexture = 1e-3;  ///< a patch on a plain edge has nearly none along it, and is used
+constexpr double kSettled_px = 0.03;  ///< a smaller step ends optical flow: a tenth of the error it is taken to have
+constexpr double kFitTolerance_px = 1.5;  ///< of a sample from the line: five times the error of optical flow
+constexpr double kSureDepth_px = 1.5;     ///< a line whose depth predicts it less exactly is expected to move as before
+constexpr double kTolerance_px = 2;       ///< a line may always be this far from where it is expected
+constexpr double kTimesTypical = 4;       ///< and this many times as far as the other lines of the frame are
+
+// Angles, in pixels at the reference focal length: motion and neighbourhoods.
+constexpr double kSpacing_px = 15;       ///< between samples, when the line is neither short nor long
+constexpr double kNear_px = 20;          ///< points nearer than this have the same weight
+constexpr double kMaxDeviation_px = 40;  ///< flow further than this from the guess is an error
 
 double median(std::vector<double> values) {
   const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
@@ -47,12 +48,12 @@ ImageLine carryEnds(const ImageLine& guess, const RobustLine& fit, const std::ve
 
 }  // namespace
 
-NearbyMotion motionNear(const cv::Point2f& px, const std::vector<PointFlow>& points) {
+NearbyMotion motionNear(const cv::Point2f& px, const std::vector<PointFlow>& points, float near_px) {
   NearbyMotion sum;
   float residuals = 0, changes = 0;
   for (const PointFlow& point : points) {
     const cv::Point2f away = point.px - point.residual - px;  // compared where both are predicted to be
-    const float weight = 1.0f / ((away.dot(away) + kNear_px * kNear_px) * (away.dot(away) + kNear_px * kNear_px));
+    const float weight = 1.0f / ((away.dot(away) + near_px * near_px) * (away.dot(away) + near_px * near_px));
     sum.residual += weight * point.residual;
     residuals += weight;
     if (!point.change) continue;
@@ -70,26 +71,19 @@ Eigen::Vector2d normalMotion(const ImageLine& turned, const ImageLine& line) {
   return {m.dot(line.start - turned.start) / along, m.dot(line.start - turned.end) / along};
 }
 
-ImageLine LineFlow::turnedLine(const ImageLine& line, const GyroPrediction& gyro) const {
-  // Ends may lie outside the image, where the lens model folds back: they stay in undistorted pixels.
-  const auto turned = [&](const Eigen::Vector2d& u) -> Eigen::Vector2d {
-    const Eigen::Vector3d ray = gyro.R_c1_c0() * (u / camera_.focal()).homogeneous();
-    return camera_.focal() * ray.head<2>() / std::max(ray.z(), 0.1);
-  };
-  return {turned(line.start), turned(line.end)};
-}
-
 LineFlow::Samples LineFlow::sample(const std::vector<CarriedLine>& lines, const GyroPrediction& gyro,
                                    const PointMotion& points) const {
   Samples samples;
+  const auto near_px = static_cast<float>(camera_.scaled(kNear_px));
+  const double spacing_px = camera_.scaled(kSpacing_px);
   for (const CarriedLine& carried : lines) {
     samples.first.push_back(samples.from.size());
-    const ImageLine turned = turnedLine(carried.line, gyro);
+    const ImageLine turned = camera_.turned(carried.line, gyro.R_c1_c0());
     const auto turnedAt = [&](double share) {
-      return turnedPixel(camera_.camera(), gyro.R_c1_c0(), carried.line.at(share) / camera_.focal());
+      return gyro.turnedPixel(camera_.camera(), carried.line.at(share) / camera_.focal());
     };
-    const NearbyMotion near_start = motionNear(turnedAt(0.1), points.flow),
-                       near_end = motionNear(turnedAt(0.9), points.flow);
+    const NearbyMotion near_start = motionNear(turnedAt(0.1), points.flow, near_px),
+                       near_end = motionNear(turnedAt(0.9), points.flow, near_px);
     Eigen::Vector2d at_start = toEigen(near_start.residual), at_end = toEigen(near_end.residual);
     if (carried.motion) {  // across the line its own motion is known better than that of the points nearby
       const Eigen::Vector2d n = turned.normal();
@@ -108,7 +102,7 @@ LineFlow::Samples LineFlow::sample(const std::vector<CarriedLine>& lines, const 
     samples.turned.push_back(turned);
     samples.guessed.push_back({turned.start + at_start, turned.end + at_end});
     const int count =
-        std::clamp(static_cast<int>(carried.line.length() / kSpacing_px), params_.min_samples, params_.max_samples);
+        std::clamp(static_cast<int>(carried.line.length() / spacing_px), params_.min_samples, params_.max_samples);
     for (int i = 0; i < count; ++i) {
       const double share = (i + 0.5) / count;
       const Eigen::Vector2d from = camera_.toImage(carried.line.at(share));
@@ -127,7 +121,8 @@ PredictedLine LineFlow::fit(const Samples& samples, std::size_t index, double ju
   std::vector<Eigen::Vector2d> guessed_u, found_u;
   for (std::size_t i = samples.first[index]; i < samples.first[index + 1]; ++i) {
     const Eigen::Vector2d px = toEigen(to[i]);
-    if (!found[i] || !camera_.camera().contains(px, 1) || cv::norm(to[i] - samples.guess[i]) > kMaxSurprise_px)
+    if (!found[i] || !camera_.camera().contains(px, 1) ||
+        cv::norm(to[i] - samples.guess[i]) > camera_.scaled(kMaxDeviation_px))
       continue;
     guessed_u.push_back(camera_.fromImage(toEigen(samples.guess[i])));
     found_u.push_back(camera_.fromImage(px));
@@ -153,18 +148,18 @@ std::vector<PredictedLine> LineFlow::follow(const std::vector<CarriedLine>& line
   const std::vector<unsigned char> found = followPatches(pyramid.previous(), pyramid.current(), samples.from, flow, to);
   std::vector<PredictedLine> followed;
   for (std::size_t i = 0; i < lines.size(); ++i)
-    followed.push_back(fit(samples, i, lines[i].motion ? reach.jump_px : kMaxSurprise_px, to, found));
+    followed.push_back(fit(samples, i, lines[i].motion ? reach.jump_px : camera_.scaled(kMaxDeviation_px), to, found));
   return followed;
 }
 
-double LineFlow::typicalSurprise(const std::vector<CarriedLine>& lines, const std::vector<PredictedLine>& followed) {
-  std::vector<double> surprises;
+double LineFlow::typicalDeviation(const std::vector<CarriedLine>& lines, const std::vector<PredictedLine>& followed) {
+  std::vector<double> deviations;
   for (std::size_t i = 0; i < lines.size(); ++i)
     if (lines[i].motion)
-      surprises.push_back(followed[i].by_flow
-                              ? normalMotion(followed[i].expected, followed[i].line).cwiseAbs().maxCoeff()
-                              : followed[i].limit_px);
-  return surprises.empty() ? 0.0 : median(std::move(surprises));
+      deviations.push_back(followed[i].by_flow
+                               ? normalMotion(followed[i].expected, followed[i].line).cwiseAbs().maxCoeff()
+                               : followed[i].limit_px);
+  return deviations.empty() ? 0.0 : median(std::move(deviations));
 }
 
 std::vector<std::optional<PredictedLine>> LineFlow::predict(const std::vector<CarriedLine>& lines,
@@ -175,10 +170,10 @@ std::vector<std::optional<PredictedLine>> LineFlow::predict(const std::vector<Ca
   std::vector<PredictedLine> followed =
       follow(lines, pyramid, gyro, points, {params_.window_px, params_.flow_levels, params_.max_jump_px});
 
-  // A camera that is jerked surprises all lines, another edge just one: what the lines of this frame have in common
+  // A camera that is jerked deviations all lines, another edge just one: what the lines of this frame have in common
   // says how far each may be off.
-  const double typical_px = typicalSurprise(lines, followed);
-  const double limit_px = std::min(params_.max_jump_px, kCalm_px + kTimesTypical * typical_px);
+  const double typical_px = typicalDeviation(lines, followed);
+  const double limit_px = std::min(params_.max_jump_px, kTolerance_px + kTimesTypical * typical_px);
   for (std::size_t i = 0; i < lines.size(); ++i) {
     if (!lines[i].motion) continue;
     followed[i].limit_px = limit_px;
@@ -204,7 +199,7 @@ std::vector<std::optional<PredictedLine>> LineFlow::predict(const std::vector<Ca
     const auto clipped = camera_.clip(result.line, params_.border_px);
     if (!clipped) continue;
     result.line = *clipped;
-    result.limit_px = lines[i].motion ? limit_px : kMaxSurprise_px;
+    result.limit_px = lines[i].motion ? limit_px : camera_.scaled(kMaxDeviation_px);
     result.typical_px = typical_px;
     predicted[i] = result;
   }

@@ -16,7 +16,7 @@ namespace lintel {
 
 /// A line of the frame before. `motion`: how far its start and end moved along its normal in the last step, beyond what
 /// the camera's rotation explains [px]; empty for a new line. Bodies have inertia: the line's next step is its last
-/// one, plus what the points nearby say has changed.
+/// one, plus the change of motion of the points nearby.
 struct CarriedLine {
   ImageLine line;
   std::optional<Eigen::Vector2d> motion;
@@ -27,11 +27,11 @@ struct CarriedLine {
 struct PredictedLine {
   ImageLine line;
   ImageLine turned;                   ///< where the line would be had the camera only turned
-  ImageLine expected;                 ///< where its own motion and the points nearby say it should be
+  ImageLine expected;                 ///< where its own motion and that of the points nearby bring it
   double limit_px = 0;                ///< further from `expected` it is another edge; see LineFlow::predict
   double typical_px = 0;              ///< how far this frame's lines are from where they were expected
   std::optional<CarriedDepth> depth;  ///< what `expected` relies on
-  bool by_flow = false;  ///< false: optical flow failed; the gyro and the points nearby say where it should be
+  bool by_flow = false;               ///< false: optical flow failed; predicted by the gyroscope and the points nearby
 };
 
 /// Carries lines from one frame to the next: several points along each are followed by KLT, starting where gyro and
@@ -58,12 +58,11 @@ class LineFlow {
   };
   std::vector<PredictedLine> follow(const std::vector<CarriedLine>& lines, const ImagePyramid& pyramid,
                                     const GyroPrediction& gyro, const PointMotion& points, const Reach& reach) const;
-  static double typicalSurprise(const std::vector<CarriedLine>& lines, const std::vector<PredictedLine>& followed);
+  static double typicalDeviation(const std::vector<CarriedLine>& lines, const std::vector<PredictedLine>& followed);
   Samples sample(const std::vector<CarriedLine>& lines, const GyroPrediction& gyro, const PointMotion& points) const;
 
   PredictedLine fit(const Samples& samples, std::size_t index, double jump_px, const std::vector<cv::Point2f>& to,
                     const std::vector<unsigned char>& found) const;
-  ImageLine turnedLine(const ImageLine& line, const GyroPrediction& gyro) const;
 
   const LineCamera& camera_;
   LineTrackerParams params_;
@@ -72,11 +71,12 @@ class LineFlow {
 /// Motion along the normal of `turned` that brings its ends onto the infinite `line` (start, end) [px].
 Eigen::Vector2d normalMotion(const ImageLine& turned, const ImageLine& line);
 
-/// What the tracked points near `px` did beyond the rotation, nearer ones weighing more; zero without any.
+/// How the tracked points around `px` moved beyond the rotation, nearer ones with more weight; zero without any. Points
+/// nearer than `near_px` have the same weight.
 struct NearbyMotion {
   cv::Point2f residual{0, 0};  ///< mean of PointFlow::residual
   cv::Point2f change{0, 0};    ///< mean of PointFlow::change
 };
-NearbyMotion motionNear(const cv::Point2f& px, const std::vector<PointFlow>& points);
+NearbyMotion motionNear(const cv::Point2f& px, const std::vector<PointFlow>& points, float near_px);
 
 }  // namespace lintel

@@ -7,9 +7,9 @@
 namespace lintel {
 namespace {
 
-constexpr double kGap_px = 15;  ///< between a line and a detection that continues it
-constexpr double kDuplicateDistance_px = 1.5;
-constexpr double kDuplicateOverlap = 0.5;  ///< of the shorter one
+constexpr double kGap_px = 15;                 ///< from a line to what continues it, at the reference focal length
+constexpr double kDuplicateDistance_px = 1.5;  ///< of the image: two lines on one edge differ by their noise
+constexpr double kDuplicateOverlap = 0.5;      ///< of the shorter one
 
 struct Pair {
   std::size_t predicted, detected;
@@ -32,14 +32,15 @@ ImageLine united(const ImageLine& a, const ImageLine& b) {
 }  // namespace
 
 double LineMerger::score(const ImageLine& predicted, const ImageLine& detected) const {
-  // A short line's direction says little far away: the longer one is the ruler.
+  // A short line's direction is uncertain: distances are measured from the longer one.
   const bool longer = predicted.length() >= detected.length();
-  const ImageLine &ruler = longer ? predicted : detected, &other = longer ? detected : predicted;
-  if (std::abs(ruler.normal().dot(other.start - ruler.start)) > params_.merge_distance_px) return 0;  // most, quickly
-  const LineRelation relation = relate(ruler, other);
+  const ImageLine &reference = longer ? predicted : detected, &other = longer ? detected : predicted;
+  if (std::abs(reference.normal().dot(other.start - reference.start)) > params_.merge_distance_px)
+    return 0;  // most, quickly
+  const LineRelation relation = relate(reference, other);
   const double shorter = std::min(predicted.length(), detected.length());
   if (relation.angle_rad > params_.merge_angle_rad || relation.distance_px > params_.merge_distance_px ||
-      relation.overlap_px < -kGap_px || shorter <= 0)
+      relation.overlap_px < -kGap_px * pixel_scale_ || shorter <= 0)
     return 0;
   // A piece that merely continues the line counts, but less than one beside it.
   const double overlap = 0.2 + 0.8 * std::clamp(relation.overlap_px / shorter, 0.0, 1.0);

@@ -16,10 +16,12 @@ struct MergedLines {
 };
 
 /// Combines what optical flow predicts with what the detector sees. Identity is the prediction's: a line that the
-/// detector split, cut or missed keeps its name, and each detection belongs to one line at most [Lim2021].
+/// detector split, cut or missed keeps its identity, and each detection belongs to one line at most [Lim2021].
 class LineMerger {
  public:
-  explicit LineMerger(const LineTrackerParams& params) : params_(params) {}
+  /// `pixel_scale`: of the camera (core/ParamRange.h).
+  explicit LineMerger(const LineTrackerParams& params, double pixel_scale = 1)
+      : params_(params), pixel_scale_(pixel_scale) {}
 
   /// All lines with the brighter side along their normal; edges of opposite contrast never merge.
   MergedLines merge(const std::vector<ImageLine>& predicted, const std::vector<ImageLine>& detected) const;
@@ -32,6 +34,7 @@ class LineMerger {
 
  private:
   LineTrackerParams params_;
+  double pixel_scale_;
 };
 
 }  // namespace lintel

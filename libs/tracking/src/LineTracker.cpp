@@ -6,6 +6,20 @@
 
 namespace lintel {
 
+LineObservation lineObservation(const LineCamera& camera, TrackId id, const ImageLine& line, double sigma_px,
+                                int track_length, bool detected) {
+  LineObservation observation;
+  observation.id = id;
+  observation.start_px = camera.toImage(line.start);
+  observation.end_px = camera.toImage(line.end);
+  observation.start = line.start / camera.focal();
+  observation.end = line.end / camera.focal();
+  observation.sigma_px = sigma_px;
+  observation.track_length = track_length;
+  observation.detected = detected;
+  return observation;
+}
+
 std::unique_ptr<LineTracker> makeLineTracker(const Rig& rig, const LineTrackerParams& params) {
   if (params.mode == "descriptor") return std::make_unique<DescriptorLineTracker>(rig, params);
   return std::make_unique<FlowLineTracker>(rig, params);

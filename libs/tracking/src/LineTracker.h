@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "GyroPrediction.h"
+#include "ImageLine.h"
 #include "ImagePyramid.h"
 #include "PointTracker.h"
 #include "lintel/core/FrameTracks.h"
@@ -25,6 +26,11 @@ class LineTracker {
   /// Lines of the current frame, ascending id.
   virtual const std::vector<LineObservation>& lines() const = 0;
 };
+
+/// What the estimator gets of a line. `sigma_px`: standard deviation of an end across the line; `track_length`: frames
+/// that have seen it, this one included; `detected`: by the detector in this frame.
+LineObservation lineObservation(const LineCamera& camera, TrackId id, const ImageLine& line, double sigma_px,
+                                int track_length, bool detected);
 
 /// The tracker of params.mode.
 std::unique_ptr<LineTracker> makeLineTracker(const Rig& rig, const LineTrackerParams& params);

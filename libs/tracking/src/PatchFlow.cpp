@@ -72,8 +72,8 @@ void add(const cv::v_int32x4& row, cv::v_float32x4& sum) {
 /// Rounded.
 cv::v_int16x8 quarter(const cv::v_int16x8& a) { return cv::v_shr<2>(cv::v_add_wrap(a, cv::v_setall_s16(2))); }
 
-/// What is looked for: a patch of the first image and its gradients. Pixels beyond the window or the image have no
-/// gradient, and so no say.
+/// What is looked for: a patch of the first image and its gradients. Pixels beyond the window or the image have zero
+/// gradient and do not count.
 class Template {
  public:
   explicit Template(int window_px)

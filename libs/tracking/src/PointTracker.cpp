@@ -6,17 +6,19 @@
 
 #include "DistanceGrid.h"
 #include "PatchFlow.h"
-#include "Prediction.h"
-#include "StageTimer.h"
 
 namespace lintel {
 namespace {
 
-constexpr double kSettled_px = 0.03;  ///< of optical flow; patches settle old points
-constexpr double kMinTexture = 0.1;   ///< patches with less are lost [grey levels^2/px^2]
-constexpr int kSteadyLevels = 2;      ///< for points whose motion is known
+constexpr double kSettled_px = 0.03;  ///< a smaller step ends optical flow: PatchAnchors places old points exactly
+constexpr double kMinTexture = 0.1;   ///< patches with less are lost: far below a corner [grey levels^2/px^2]
+constexpr int kSteadyLevels = 2;      ///< of the pyramid for points whose motion is known: 10 px of change
+constexpr int kBackwardLevels = 1;    ///< of the pyramid on the way back, which starts at the answer
 constexpr int kProven = 5;            ///< frames after which a point that looks like its patch needs no way back
-constexpr int kBackwardLevels = 1;    ///< the way back starts at the answer
+constexpr double kCrowded =
+    0.5;  ///< of the distance that new points keep: tracks may approach, but not become the same
+constexpr int kInliersForGyro = 15;       ///< with fewer their rotation does not correct that of the gyroscope
+constexpr int kInliersForDirection = 10;  ///< of a translation
 
 bool inside(const PinholeRadtan& camera, const cv::Point2f& p, double border) {
   return camera.contains({p.x, p.y}, border);
@@ -84,17 +86,18 @@ void PointTracker::followFrom(const ImagePyramid& pyramid, const std::vector<std
   for (std::size_t k = 0; k < indices.size(); ++k) {
     const std::size_t i = indices[k];
     followed.px[i] = to[k];
-    followed.fate[i] = Fate::kLost;
+    followed.outcome[i] = Outcome::kLost;
     if (!found[k] || !inside(camera_, to[k], params_.border_px)) continue;
     const bool is_young = points_[i].track_length < kProven;
     const AnchorVerdict verdict = is_young ? AnchorVerdict::kUnsure : align(i);
     if (is_young) young.push_back(i);
-    if (verdict == AnchorVerdict::kHeld) followed.fate[i] = Fate::kAlive;
+    if (verdict == AnchorVerdict::kHeld) followed.outcome[i] = Outcome::kTracked;
     if (verdict == AnchorVerdict::kUnsure) unsure.push_back(i);
   }
   followBack(pyramid, unsure, followed);
   for (const std::size_t i : young)
-    if (followed.fate[i] == Fate::kAlive && align(i) == AnchorVerdict::kLost) followed.fate[i] = Fate::kLost;
+    if (followed.outcome[i] == Outcome::kTracked && align(i) == AnchorVerdict::kLost)
+      followed.outcome[i] = Outcome::kLost;
 }
 
 void PointTracker::followBack(const ImagePyramid& pyramid, const std::vector<std::size_t>& indices,
@@ -109,17 +112,18 @@ void PointTracker::followBack(const ImagePyramid& pyramid, const std::vector<std
   const std::vector<unsigned char> found =
       followPatches(pyramid.current(), pyramid.previous(), from, flowParams(kBackwardLevels), to);
   for (std::size_t k = 0; k < indices.size(); ++k)
-    followed.fate[indices[k]] =
-        found[k] && cv::norm(to[k] - before[k]) <= params_.forward_backward_px ? Fate::kAlive : Fate::kNotReturned;
+    followed.outcome[indices[k]] = found[k] && cv::norm(to[k] - before[k]) <= params_.forward_backward_px
+                                       ? Outcome::kTracked
+                                       : Outcome::kNotReturned;
 }
 
 PointTracker::Followed PointTracker::follow(const ImagePyramid& pyramid, const GyroPrediction& gyro,
                                             PointStatistics& statistics) {
   Followed followed;
-  followed.fate.assign(points_.size(), Fate::kLost);
+  followed.outcome.assign(points_.size(), Outcome::kLost);
   std::vector<std::size_t> steady, others;
   for (std::size_t i = 0; i < points_.size(); ++i) {
-    followed.px.push_back(turnedPixel(camera_, gyro.R_c1_c0(), points_[i].normalised));
+    followed.px.push_back(gyro.turnedPixel(camera_, points_[i].normalised));
     const auto before = residuals_.find(points_[i].id);
     (before == residuals_.end() ? others : steady).push_back(i);
     if (before != residuals_.end()) followed.px[i] += before->second;
@@ -127,21 +131,21 @@ PointTracker::Followed PointTracker::follow(const ImagePyramid& pyramid, const G
   // What moves as before needs few levels. New points and those that were not found are looked for from afar.
   followFrom(pyramid, steady, kSteadyLevels, followed);
   for (const std::size_t i : steady)
-    if (followed.fate[i] != Fate::kAlive) {
-      followed.px[i] = turnedPixel(camera_, gyro.R_c1_c0(), points_[i].normalised);
+    if (followed.outcome[i] != Outcome::kTracked) {
+      followed.px[i] = gyro.turnedPixel(camera_, points_[i].normalised);
       others.push_back(i);
     }
   followFrom(pyramid, others, pyramid.levels(), followed);
-  for (const Fate fate : followed.fate) {
-    statistics.lost_klt += fate == Fate::kLost;
-    statistics.lost_backward += fate == Fate::kNotReturned;
+  for (const Outcome outcome : followed.outcome) {
+    statistics.lost_klt += outcome == Outcome::kLost;
+    statistics.lost_backward += outcome == Outcome::kNotReturned;
   }
   return followed;
 }
 
 void PointTracker::startAnchors(const ImagePyramid& pyramid, const Followed& followed) {
   for (std::size_t i = 0; i < points_.size(); ++i)
-    if (followed.fate[i] == Fate::kAlive && !anchors_.has(points_[i].id))
+    if (followed.outcome[i] == Outcome::kTracked && !anchors_.has(points_[i].id))
       anchors_.add(points_[i].id, pyramid.image(), followed.px[i]);
 }
 
@@ -149,7 +153,7 @@ void PointTracker::rejectByEpipolarGeometry(Followed& followed, GyroPrediction& 
   std::vector<TwoViewPair> pairs;
   std::vector<std::size_t> index;
   for (std::size_t i = 0; i < points_.size(); ++i) {
-    if (followed.fate[i] != Fate::kAlive) continue;
+    if (followed.outcome[i] != Outcome::kTracked) continue;
     pairs.push_back({points_[i].normalised, camera_.normalise({followed.px[i].x, followed.px[i].y})});
     index.push_back(i);
   }
@@ -157,29 +161,30 @@ void PointTracker::rejectByEpipolarGeometry(Followed& followed, GyroPrediction& 
       twoViewMotion(pairs, gyro.R_c1_c0(), gyro.information(), twoViewParams(camera_, params_.epipolar_px));
   for (std::size_t k = 0; k < index.size(); ++k)
     if (!motion.inlier[k]) {
-      followed.fate[index[k]] = Fate::kLost;
+      followed.outcome[index[k]] = Outcome::kLost;
       ++statistics.lost_epipolar;
     }
-  // Half of the points off any epipolar line: the scene moves or the images are bad; nothing to learn about the gyro.
-  if (motion.inliers >= 15 && 2 * static_cast<std::size_t>(motion.inliers) > pairs.size())
+  // Half of the points off any epipolar line: the scene moves or the images are bad; the gyroscope's bias is not
+  // estimated from them.
+  if (motion.inliers >= kInliersForGyro && 2 * static_cast<std::size_t>(motion.inliers) > pairs.size())
     gyro.correct(motion.delta, motion.information);
   std::vector<StepTranslation::Pair> inliers;
   for (std::size_t k = 0; k < index.size(); ++k)
     if (motion.inlier[k]) inliers.push_back({points_[index[k]].id, pairs[k].x0, pairs[k].x1});
-  const bool known = motion.inliers >= 10 && 2 * static_cast<std::size_t>(motion.inliers) > pairs.size();
+  const bool known =
+      motion.inliers >= kInliersForDirection && 2 * static_cast<std::size_t>(motion.inliers) > pairs.size();
   step_.update(inliers, gyro.R_c1_c0(), known ? std::make_optional(motion.direction) : std::nullopt);
 }
 
 void PointTracker::rejectCrowded(Followed& followed, PointStatistics& statistics) const {
-  // Half of the distance that new points keep: tracks may approach each other, but not become the same. Ids ascend, so
-  // that the older one stays.
-  DistanceGrid occupied(camera_.width, camera_.height, 0.5 * params_.min_distance_px);
+  // Ids ascend, so that the older one stays.
+  DistanceGrid occupied(camera_.width, camera_.height, kCrowded * params_.min_distance_px);
   for (std::size_t i = 0; i < points_.size(); ++i) {
-    if (followed.fate[i] != Fate::kAlive) continue;
+    if (followed.outcome[i] != Outcome::kTracked) continue;
     if (occupied.isFree(followed.px[i])) {
       occupied.insert(followed.px[i]);
     } else {
-      followed.fate[i] = Fate::kLost;
+      followed.outcome[i] = Outcome::kLost;
       ++statistics.lost_crowded;
     }
   }
@@ -189,12 +194,12 @@ void PointTracker::accept(const Followed& followed, const GyroPrediction& gyro, 
   std::vector<PointObservation> kept;
   std::map<TrackId, cv::Point2f> residuals;
   for (std::size_t i = 0; i < points_.size(); ++i) {
-    if (followed.fate[i] != Fate::kAlive) {
+    if (followed.outcome[i] != Outcome::kTracked) {
       statistics.lifetimes.add(points_[i].track_length);
       continue;
     }
     PointObservation p = points_[i];
-    PointFlow flow{followed.px[i], followed.px[i] - turnedPixel(camera_, gyro.R_c1_c0(), p.normalised), std::nullopt};
+    PointFlow flow{followed.px[i], followed.px[i] - gyro.turnedPixel(camera_, p.normalised), std::nullopt};
     if (const auto before = residuals_.find(p.id); before != residuals_.end())
       flow.change = flow.residual - before->second;
     residuals[p.id] = flow.residual;

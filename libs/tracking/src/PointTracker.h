@@ -21,14 +21,14 @@
 
 namespace lintel {
 
-/// A point that was followed into the current frame: what it did, for those who follow other things.
+/// Motion of a point that was followed into the current frame, for the prediction of lines.
 struct PointFlow {
   cv::Point2f px;                     ///< in the current frame
   cv::Point2f residual;               ///< flow beyond what the rotation explains
   std::optional<cv::Point2f> change;  ///< of the residual against that of the step before; empty for a new point
 };
 
-/// What the points tell those who follow other things.
+/// Motion of the points and of the camera, for the prediction of lines.
 struct PointMotion {
   const std::vector<PointFlow>& flow;  ///< of the points that were followed into the current frame
   const StepTranslation& step;         ///< of the camera
@@ -47,10 +47,10 @@ class PointTracker {
   PointMotion motion() const { return {flow_, step_}; }
 
  private:
-  enum class Fate : char { kAlive, kLost, kNotReturned };
+  enum class Outcome : char { kTracked, kLost, kNotReturned };
   struct Followed {
     std::vector<cv::Point2f> px;
-    std::vector<Fate> fate;
+    std::vector<Outcome> outcome;
   };
 
   /// Follows the points of `indices` from where `followed` guesses them; those that are not held to their patch also

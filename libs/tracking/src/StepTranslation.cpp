@@ -7,11 +7,11 @@
 namespace lintel {
 namespace {
 
-constexpr double kNoise_px = 0.3;      ///< of a point's place
-constexpr double kStill_px = 0.3;      ///< median motion below this has no direction
-constexpr std::size_t kMinPoints = 5;  ///< with a known depth, to carry the unit on
-constexpr double kDrift = 0.03;        ///< relative growth of a depth's uncertainty per step
-constexpr double kGate = 4;            ///< sigmas; a measurement beyond is not used
+constexpr double kNoise_px = 0.3;      ///< of a point's place in the image, whatever the focal length
+constexpr double kStill_px = 0.3;      ///< median motion below this noise has no direction
+constexpr std::size_t kMinPoints = 5;  ///< with a known depth, to carry the unit on: a median of fewer is not robust
+constexpr double kDrift = 0.03;        ///< relative growth of a depth's uncertainty per step: the length's error
+constexpr double kGate = 4;            ///< standard deviations; a measurement beyond is not used
 
 double median(std::vector<double> values) {
   const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);

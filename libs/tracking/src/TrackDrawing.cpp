@@ -29,7 +29,7 @@ cv::Point drawn(const Eigen::Vector2d& px) {
 }
 
 void drawLine(cv::Mat& canvas, const PinholeRadtan& camera, const LineObservation& line) {
-  constexpr int kPieces = 24;
+  constexpr int kPieces = 24;  // short enough to bend with the lens, and to be dashes
   const cv::Scalar colour = colourOf(line.id);
   for (int i = 0; i < kPieces; ++i) {
     if (!line.detected && i % 2 == 1) continue;

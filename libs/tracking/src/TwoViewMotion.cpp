@@ -15,8 +15,10 @@ namespace {
 using Vector5d = Eigen::Matrix<double, 5, 1>;
 using Matrix5d = Eigen::Matrix<double, 5, 5>;
 
-constexpr std::size_t kMinPairs = 8;
-constexpr double kConverged_rad = 1e-5;
+constexpr std::size_t kMinPairs = 8;     // five unknowns, and some to tell outliers by
+constexpr double kConverged_rad = 1e-5;  // less than a hundredth of a pixel
+constexpr double kRobustScale = 2;       // standard deviations from which on a point loses weight (Cauchy)
+constexpr double kDirectionPrior = 1;    // damping of the direction [1/rad^2]: far below what a translation gives
 
 /// A fixed, platform-independent sequence: std distributions differ between libraries.
 class Sequence {
@@ -110,7 +112,7 @@ void refine(const std::vector<Rays>& rays, const Eigen::Matrix3d& R_information,
   const double noise = params.noise_px / params.focal_px;
   for (int iteration = 0; iteration < 6; ++iteration) {
     const Eigen::Matrix<double, 3, 2> B = tangentBasis(motion.direction);
-    NormalEquations eq = linearise(rays, motion.delta, motion.direction, B, noise, 2.0);
+    NormalEquations eq = linearise(rays, motion.delta, motion.direction, B, noise, kRobustScale);
     // Without translation the direction is free: the damping holds it, and its freedom is taken out of the rotation's
     // information by the Schur complement below.
     const Eigen::Matrix2d H_tt =
@@ -119,7 +121,7 @@ void refine(const std::vector<Rays>& rays, const Eigen::Matrix3d& R_information,
     motion.information = eq.H.topLeftCorner<3, 3>() - H_rt * H_tt.inverse() * H_rt.transpose();
     eq.H.topLeftCorner<3, 3>() += R_information;
     eq.g.head<3>() += R_information * motion.delta;
-    eq.H.bottomRightCorner<2, 2>() += Eigen::Matrix2d::Identity() * 1.0;
+    eq.H.bottomRightCorner<2, 2>() += Eigen::Matrix2d::Identity() * kDirectionPrior;
     const Vector5d step = -eq.H.ldlt().solve(eq.g);
     if (!step.allFinite()) return;
     motion.delta = logRotation(expRotation(step.head<3>()) * expRotation(motion.delta));

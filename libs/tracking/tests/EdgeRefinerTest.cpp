@@ -5,7 +5,6 @@
 
 #include <algorithm>
 
-#include "EdgeSides.h"
 #include "ImagePyramid.h"
 #include "TestImages.h"
 
@@ -95,18 +94,6 @@ TEST_F(EdgeRefinerTest, findsABlurredEdgeAtHalfResolution) {
 TEST_F(EdgeRefinerTest, findsNothingOnAPlainImage) {
   show([](const Eigen::Vector2d&) { return 100.0; });
   EXPECT_FALSE(refiner_.refine(pyramid_, line(-0.3, 0, 0.3, 0), 3, 0));
-}
-
-TEST_F(EdgeRefinerTest, sidesAreTheGreyLevelsBesideTheEdge) {
-  show(testing::strips({strip_}, {}, 70, 150));
-  const auto sides = sidesOf(camera_, pyramid_.image(), line(-0.4, -0.266, 0.4, -0.234));
-  ASSERT_TRUE(sides);
-  EXPECT_NEAR(sides->dark, 70, 2);
-  EXPECT_NEAR(sides->bright, 150, 2);
-  EXPECT_FALSE(sidesOf(camera_, pyramid_.image(), line(-2, -0.6, -0.7, -0.5))) << "hardly any of it in the image";
-  EXPECT_TRUE(maybeSame({90, 130}, {70, 150})) << "blurred";
-  EXPECT_TRUE(maybeSame({80, 170}, {70, 150})) << "a little more light";
-  EXPECT_FALSE(maybeSame({150, 210}, {70, 150})) << "the next step of a staircase";
 }
 
 TEST_F(EdgeRefinerTest, turnsTheNormalToTheBrighterSide) {

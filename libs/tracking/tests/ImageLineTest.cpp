@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 #include "TestImages.h"
 
 namespace lintel {
@@ -26,6 +28,21 @@ TEST(LineCamera, clipsAtTheImageBorder) {
   EXPECT_FALSE(camera.clip({{0, -900}, {100, -900}}, 4));
 }
 
+TEST(LineCamera, givesLengthsOfTheReferenceCamera) {
+  PinholeRadtan pinhole = testing::testRig().camera;
+  pinhole.fx = pinhole.fy = 916;
+  EXPECT_EQ(LineCamera(pinhole).scaled(15), 30);
+}
+
+TEST(LineCamera, turnsALine) {
+  const LineCamera camera(testing::testRig().camera);
+  const Eigen::Quaterniond R_c1_c0(Eigen::AngleAxisd(0.1, Eigen::Vector3d::UnitY()));
+  const ImageLine turned = camera.turned({{0, 0}, {0, 50}}, R_c1_c0);
+  EXPECT_NEAR(turned.start.x(), camera.focal() * std::tan(0.1), 1e-9);
+  EXPECT_NEAR(turned.start.y(), 0, 1e-12);
+  EXPECT_NEAR(turned.end.y(), 50 / std::cos(0.1), 1e-9);
+}
+
 TEST(Relate, measuresAngleDistanceAndOverlap) {
   const LineRelation beside = relate({{0, 0}, {100, 0}}, {{50, 2}, {150, 4}});
   EXPECT_NEAR(beside.angle_rad, 0.02, 1e-4);
@@ -33,6 +50,21 @@ TEST(Relate, measuresAngleDistanceAndOverlap) {
   EXPECT_NEAR(beside.overlap_px, 50, 1e-12);
   EXPECT_NEAR(relate({{0, 0}, {100, 0}}, {{110, 0}, {200, 0}}).overlap_px, -10, 1e-12);
   EXPECT_NEAR(relate({{0, 0}, {100, 0}}, {{100, 0}, {0, 0}}).angle_rad, M_PI, 1e-12);
+}
+
+TEST(RobustLine, leavesOutliersOut) {
+  const auto fit = fitRobustLine({{0, 0}, {10, 5.2}, {20, 9.9}, {30, 40}, {40, 20.1}, {50, 24.9}, {60, -12}}, 1.5);
+  ASSERT_TRUE(fit);
+  EXPECT_EQ(fit->inliers, 5);
+  EXPECT_FALSE(fit->inlier[3]);
+  EXPECT_FALSE(fit->inlier[6]);
+  EXPECT_NEAR(fit->line.direction().y() / fit->line.direction().x(), 0.5, 0.01);
+}
+
+TEST(RobustLine, refusesScatterAndTooFew) {
+  EXPECT_FALSE(fitRobustLine({{0, 0}, {10, 30}, {20, -30}, {30, 55}, {40, -70}, {50, 5}}, 1.5));
+  EXPECT_FALSE(fitRobustLine({{0, 0}, {10, 0}}, 1.5));
+  EXPECT_FALSE(fitRobustLine({{1, 1}, {1, 1}, {1, 1}}, 1.5));
 }
 
 }  // namespace

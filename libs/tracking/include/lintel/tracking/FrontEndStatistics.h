@@ -6,6 +6,8 @@
 #include <string>
 #include <vector>
 
+#include "lintel/core/ThreadTime.h"
+
 namespace lintel {
 
 /// CPU time of one stage, a value per run of it [ms].
@@ -64,6 +66,20 @@ struct FrontEndStatistics {
   PointStatistics points;
   LineStatistics lines;
   std::map<std::string, StageTimes> stages;  ///< by name of the stage
+};
+
+/// Adds the CPU time of this thread from its construction to its end to a stage.
+class StageTimer {
+ public:
+  StageTimer(FrontEndStatistics& statistics, const std::string& stage)
+      : times_(statistics.stages[stage]), start_ms_(threadTimeMs()) {}
+  ~StageTimer() { times_.ms.push_back(static_cast<float>(threadTimeMs() - start_ms_)); }
+  StageTimer(const StageTimer&) = delete;
+  StageTimer& operator=(const StageTimer&) = delete;
+
+ private:
+  StageTimes& times_;
+  double start_ms_;
 };
 
 }  // namespace lintel
