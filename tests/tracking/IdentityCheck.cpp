@@ -6,6 +6,8 @@
 #include <cstdio>
 #include <ostream>
 
+#include "lintel/core/Quantiles.h"
+
 namespace lintel::truth {
 namespace {
 
@@ -20,11 +22,9 @@ constexpr int kSightings = 2;
 constexpr double kLong = 10;  ///< sightings of a line whose mean says something
 constexpr double kMedianOfNormal = 0.6745;
 
-double quantile(std::vector<double> values, double q) {
-  if (values.empty()) return 0;
-  const auto at = values.begin() + static_cast<std::ptrdiff_t>(q * static_cast<double>(values.size() - 1));
-  std::nth_element(values.begin(), at, values.end());
-  return *at;
+/// Of absolute values, over that of normally distributed ones of sigma 1; 0 without any.
+double scaledMedian(std::vector<double>& values) {
+  return values.empty() ? 0 : lowerQuantile(values, 0.5) / kMedianOfNormal;
 }
 
 double rootMeanSquare(const std::vector<double>& values) {
@@ -151,11 +151,11 @@ IdentityCheck::SigmaRatios IdentityCheck::sigmaRatios() const {
     }
   }
   result.count = ratios.size();
-  result.typical = quantile(ratios, 0.5) / kMedianOfNormal;
+  result.typical = scaledMedian(ratios);
   result.rms = rootMeanSquare(ratios);
-  result.within_typical = quantile(within, 0.5) / kMedianOfNormal;
+  result.within_typical = scaledMedian(within);
   result.within_rms = rootMeanSquare(within);
-  result.error_px = quantile(errors, 0.5) / kMedianOfNormal;
+  result.error_px = scaledMedian(errors);
   result.beyond_3 = static_cast<double>(std::count_if(ratios.begin(), ratios.end(), [](double r) { return r > 3; })) /
                     std::max(1.0, static_cast<double>(ratios.size()));
   return result;

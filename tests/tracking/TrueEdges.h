@@ -4,9 +4,11 @@
 #include <Eigen/Core>
 #include <cstdint>
 #include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
+#include "TruePoses.h"
 #include "lintel/core/Rig.h"
 #include "lintel/geometry/PinholeRadtan.h"
 #include "lintel/geometry/Pose.h"
@@ -25,7 +27,8 @@ struct SeenEdge {
 /// Throws std::runtime_error naming what is missing.
 class TrueEdges {
  public:
-  TrueEdges(const std::string& recording, const Rig& rig);
+  /// `poses` must outlive this.
+  TrueEdges(const std::string& recording, const Rig& rig, const TruePoses& poses);
 
   const PinholeRadtan& camera() const { return camera_; }
   /// Edges that the image of that time shows; empty without a pose for it.
@@ -39,7 +42,7 @@ class TrueEdges {
     Eigen::Vector3d start_w, end_w;
     std::string kind;
   };
-  bool poseAt(std::int64_t t_ns, Pose& T_c_w) const;
+  std::optional<Pose> poseAt(std::int64_t t_ns) const;  ///< T_c_w
   Eigen::Vector3d lineOf(const Edge& edge, const Pose& T_c_w) const;
 
   PinholeRadtan camera_;
@@ -47,7 +50,7 @@ class TrueEdges {
   double delay_s_ = 0;  ///< an image with stamp t shows the scene at t + delay
   std::map<int, Edge> edges_;
   std::multimap<std::int64_t, std::pair<int, int>> visible_;  ///< time: edge, mask of its five points
-  std::vector<std::pair<std::int64_t, Pose>> poses_;          ///< T_w_b
+  const TruePoses& poses_;
 };
 
 }  // namespace lintel::truth

@@ -6,6 +6,8 @@
 #include <fstream>
 #include <limits>
 
+#include "lintel/core/Quantiles.h"
+
 namespace lintel {
 
 namespace {
@@ -72,8 +74,7 @@ double BenchCell::median(Json BenchRun::*part, const std::string& path) const {
     if (const double value = BenchRun::number(run.*part, path); run.ok() && std::isfinite(value))
       values.push_back(value);
   if (values.empty()) return std::numeric_limits<double>::quiet_NaN();
-  std::sort(values.begin(), values.end());
-  return 0.5 * (values[(values.size() - 1) / 2] + values[values.size() / 2]);
+  return lintel::median(values);
 }
 
 BenchResults::BenchResults(const BenchSuite& suite, const std::vector<BenchJob>& jobs)

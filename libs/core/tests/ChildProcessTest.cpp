@@ -3,11 +3,9 @@
 
 #include <gmock/gmock.h>
 
-#include <cstdio>
-#include <filesystem>
-#include <fstream>
-#include <iterator>
 #include <string>
+
+#include "lintel/testing/TempFolder.h"
 
 namespace lintel {
 namespace {
@@ -43,12 +41,10 @@ TEST(ChildProcess, AddsToTheEnvironmentAndReplaces) {
 }
 
 TEST(ChildProcess, TheLogIsAppendedTo) {
-  const std::string log = std::filesystem::temp_directory_path() / "lintel_child_log";
-  std::remove(log.c_str());
+  const test::TempFolder folder;
+  const std::string log = folder / "log";
   for (const char* word : {"one", "two"}) runChild({{"sh", "-c", std::string("echo ") + word}, "", log, {}});
-  std::ifstream file(log);
-  EXPECT_EQ(std::string(std::istreambuf_iterator<char>(file), {}), "one\ntwo\n");
-  std::remove(log.c_str());
+  EXPECT_EQ(test::bytesOf(log), "one\ntwo\n");
 }
 
 TEST(ChildProcess, ShellLinesSurviveAShell) {

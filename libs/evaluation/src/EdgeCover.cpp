@@ -3,6 +3,8 @@
 
 #include <algorithm>
 
+#include "lintel/mapping/CommonKeyframes.h"
+
 namespace lintel {
 
 namespace {
@@ -10,20 +12,9 @@ namespace {
 constexpr double kApart_px = 2.5;  ///< between two lines of an image; MergeParams::min_separation_px has the same
 
 /// Whether the images that show both show two lines: at least half of those in which they lie side by side.
-bool areSeenApart(const MapLine& a, const MapLine& b) {
-  int apart = 0, together = 0;
-  for (auto i = a.observations.begin(), j = b.observations.begin();
-       i != a.observations.end() && j != b.observations.end();) {
-    if (i->keyframe_id != j->keyframe_id) {
-      i->keyframe_id < j->keyframe_id ? ++i : ++j;
-      continue;
-    }
-    for (auto k = j; k != b.observations.end() && k->keyframe_id == i->keyframe_id; ++k)
-      if (const double px = separation({i->start_px, i->end_px}, {k->start_px, k->end_px}); px >= 0)
-        ++(px > kApart_px ? apart : together);
-    ++i;
-  }
-  return apart > 0 && apart >= together;
+bool areSeenAsTwo(const MapLine& a, const MapLine& b) {
+  const SideBySide seen = sideBySide(a.observations, b.observations, &MapLineObservation::keyframe_id, kApart_px);
+  return seen.apart > 0 && seen.apart >= seen.together;
 }
 
 }  // namespace
@@ -66,8 +57,8 @@ double EdgeCover::duplicates() const {
   return times([](const MapLine&, const MapLine&) { return true; });
 }
 
-double EdgeCover::duplicatesNotSeenApart() const {
-  return times([](const MapLine& a, const MapLine& b) { return !areSeenApart(a, b); });
+double EdgeCover::trueDuplicates() const {
+  return times([](const MapLine& a, const MapLine& b) { return !areSeenAsTwo(a, b); });
 }
 
 }  // namespace lintel

@@ -18,9 +18,9 @@ class EdgeCover {
   /// Sum of the covered stretches' lengths over the length of their union; NaN without any.
   double duplicates() const;
 
-  /// The same without lines that images show beside all the others there: parallel lines close together are no
-  /// duplicates.
-  double duplicatesNotSeenApart() const;
+  /// The same, but a line that images show side by side with all the others there does not count: parallel lines close
+  /// together are no duplicates.
+  double trueDuplicates() const;
 
  private:
   struct Stretch {

@@ -70,7 +70,7 @@ Json jsonOf(const LineErrors& e) {
           {"precision", e.precision},
           {"recall", e.recall},
           {"duplicates", e.duplicates},
-          {"duplicates_not_seen_apart", e.duplicates_not_seen_apart},
+          {"true_duplicates", e.true_duplicates},
           {"all_matched", jsonOf(e.all_matched)},
           {"well_determined_matched", jsonOf(e.well_determined_matched)},
           {"degenerate_matched", jsonOf(e.degenerate_matched)},

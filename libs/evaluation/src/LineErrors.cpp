@@ -6,6 +6,7 @@
 
 #include "EdgeCover.h"
 #include "LineMatching.h"
+#include "lintel/core/Quantiles.h"
 
 namespace lintel {
 
@@ -64,10 +65,7 @@ class ErrorCollector {
  private:
   static double quantile(std::vector<double> values, double q) {
     if (values.empty()) return std::numeric_limits<double>::quiet_NaN();
-    const auto index = std::min(values.size() - 1, static_cast<std::size_t>(q * static_cast<double>(values.size())));
-    const auto nth = values.begin() + static_cast<std::ptrdiff_t>(index);
-    std::nth_element(values.begin(), nth, values.end());
-    return *nth;
+    return upperQuantile(values, q);
   }
 
   std::vector<double> direction_rad_, distance_m_;
@@ -95,7 +93,7 @@ void addPrecision(LineErrors& result, const std::vector<AlignedLine>& lines, con
   result.well_determined_matched = well_determined.result();
   result.constrained_matched = constrained.result();
   result.duplicates = cover.duplicates();
-  result.duplicates_not_seen_apart = cover.duplicatesNotSeenApart();
+  result.true_duplicates = cover.trueDuplicates();
 }
 
 void addSurfacePrecision(LineErrors& result, const std::vector<AlignedLine>& lines, const LineErrorParams& params,

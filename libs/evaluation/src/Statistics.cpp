@@ -4,11 +4,13 @@
 #include <algorithm>
 #include <cmath>
 
+#include "lintel/core/Quantiles.h"
+
 namespace lintel {
 
 ErrorStatistics statisticsOf(std::vector<double> errors) {
   if (errors.empty()) return {};
-  std::sort(errors.begin(), errors.end());
+  std::sort(errors.begin(), errors.end());  // small values first: their sum loses least
   double sum = 0, sum_squares = 0;
   for (const double e : errors) {
     sum += e;
@@ -16,17 +18,16 @@ ErrorStatistics statisticsOf(std::vector<double> errors) {
   }
   const std::size_t n = errors.size();
   const auto count = static_cast<double>(n);
-  const auto quantile = [&](double q) { return errors[std::min(n - 1, static_cast<std::size_t>(q * count))]; };
-  const double median = 0.5 * (errors[(n - 1) / 2] + errors[n / 2]);
+  const double largest = errors.back();
   return {n,
           std::sqrt(sum_squares / count),
           sum / count,
-          median,
-          errors.back(),
-          quantile(0.05),
-          quantile(0.25),
-          quantile(0.75),
-          quantile(0.95)};
+          median(errors),
+          largest,
+          upperQuantile(errors, 0.05),
+          upperQuantile(errors, 0.25),
+          upperQuantile(errors, 0.75),
+          upperQuantile(errors, 0.95)};
 }
 
 }  // namespace lintel

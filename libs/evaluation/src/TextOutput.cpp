@@ -82,7 +82,7 @@ void printText(const LineErrors& e, std::ostream& out) {
   out << "  of the map on true edges\n";
   printShares("recall", e.tolerances_m, e.recall, out);
   out << "  of " << fixed(e.observable_m, 1) << " m observable edges\n";
-  out << "duplicates      " << fixed(e.duplicates, 2) << "; " << fixed(e.duplicates_not_seen_apart, 2)
+  out << "duplicates      " << fixed(e.duplicates, 2) << "; " << fixed(e.true_duplicates, 2)
       << " without lines that images show as two\nmatched segments\n";
   printSegmentErrors("all", e.all_matched, out);
   printSegmentErrors("well determined", e.well_determined_matched, out);

@@ -3,7 +3,7 @@
 
 #include <cmath>
 
-#include "TextRows.h"
+#include "lintel/core/TextRows.h"
 
 namespace lintel {
 
@@ -27,7 +27,7 @@ std::pair<std::int64_t, Pose> stampedPoseOf(const TextRows& rows, bool is_euroc)
 }  // namespace
 
 StampedPoses readTrajectory(const std::string& path) {
-  TextRows rows(path);
+  TextRows rows(path, throwError<EvaluationError>);
   StampedPoses trajectory;
   bool is_euroc = false;
   while (rows.next()) {

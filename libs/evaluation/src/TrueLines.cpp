@@ -5,7 +5,7 @@
 #include <map>
 #include <string_view>
 
-#include "TextRows.h"
+#include "lintel/core/TextRows.h"
 #include "lintel/evaluation/TrajectoryFile.h"
 
 namespace lintel {
@@ -32,7 +32,7 @@ Columns readHeader(const TextRows& rows) {
 }  // namespace
 
 std::vector<TrueLine> readTrueLines(const std::string& path) {
-  TextRows rows(path);
+  TextRows rows(path, throwError<EvaluationError>);
   if (!rows.next(/*skip_comments=*/false))
     throw EvaluationError(path + ": is empty; give lines as in mav0/lines0/data.csv");
   const Columns columns = readHeader(rows);

@@ -93,11 +93,11 @@ TEST(LineErrors, LinesThatImagesShowApartAreNoDuplicates) {
   map[2].observations = {seenAt(3, 51)};
   LineErrors e = evaluateLines(map, {}, kEdges);
   EXPECT_NEAR(e.duplicates, 3, 1e-12);
-  EXPECT_NEAR(e.duplicates_not_seen_apart, 2, 1e-12);
+  EXPECT_NEAR(e.true_duplicates, 2, 1e-12);
   map[2].observations = {seenAt(4, 51)};  // never in one image with the others: nothing says that it is another line
-  EXPECT_NEAR(evaluateLines(map, {}, kEdges).duplicates_not_seen_apart, 2, 1e-12);
+  EXPECT_NEAR(evaluateLines(map, {}, kEdges).true_duplicates, 2, 1e-12);
   map[2].observations = {seenAt(3, 90)};
-  EXPECT_NEAR(evaluateLines(map, {}, kEdges).duplicates_not_seen_apart, 1, 1e-12);
+  EXPECT_NEAR(evaluateLines(map, {}, kEdges).true_duplicates, 1, 1e-12);
 }
 
 TEST(LineErrors, ShortAndRarelySeenEdgesDoNotCountForRecall) {

@@ -7,7 +7,7 @@
 #include <cstdio>
 #include <map>
 
-#include "Quantile.h"
+#include "lintel/core/Quantiles.h"
 
 namespace lintel {
 
@@ -48,8 +48,9 @@ LineColouring::LineColouring(LineColour mode, const std::vector<const MapLine*>&
   if (mode != LineColour::kUncertainty && mode != LineColour::kHeight) return;
   std::vector<double> values;
   for (const MapLine* line : lines) values.push_back(shown(*line));
-  low_ = quantile(values, 0.02);
-  high_ = std::max(quantile(values, 0.98), low_ + 1e-9);
+  if (values.empty()) values.push_back(0);
+  low_ = nearestQuantile(values, 0.02);
+  high_ = std::max(nearestQuantile(values, 0.98), low_ + 1e-9);
 }
 
 double LineColouring::shown(const MapLine& line) const {

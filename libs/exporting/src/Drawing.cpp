@@ -7,7 +7,7 @@
 #include <map>
 
 #include "GroupNames.h"
-#include "Quantile.h"
+#include "lintel/core/Quantiles.h"
 
 namespace lintel {
 
@@ -131,8 +131,8 @@ Eigen::AlignedBox3d coreOf(const Drawing& drawing) {
   if (values[0].empty()) return {Eigen::Vector3d(-1, -1, -1), Eigen::Vector3d(1, 1, 1)};
   for (Eigen::Index axis = 0; axis < 3; ++axis) {
     auto& along = values[static_cast<std::size_t>(axis)];
-    box.min()[axis] = quantile(along, 0.02);
-    box.max()[axis] = quantile(along, 0.98);
+    box.min()[axis] = nearestQuantile(along, 0.02);
+    box.max()[axis] = nearestQuantile(along, 0.98);
   }
   return box;
 }
@@ -157,7 +157,7 @@ double frustumDepth(const Drawing& drawing) {
     if (std::isfinite(gap_m)) gaps_m.push_back(gap_m);
   }
   const double widest_m = std::clamp(0.02 * extent_m, 1e-4, 0.3);
-  return gaps_m.empty() ? widest_m : std::clamp(quantile(gaps_m, 0.5), 0.3 * widest_m, widest_m);
+  return gaps_m.empty() ? widest_m : std::clamp(nearestQuantile(gaps_m, 0.5), 0.3 * widest_m, widest_m);
 }
 
 }  // namespace

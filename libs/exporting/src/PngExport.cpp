@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "Picture.h"
-#include "Quantile.h"
 #include "Writers.h"
+#include "lintel/core/Quantiles.h"
 
 namespace lintel {
 
@@ -25,7 +25,7 @@ Eigen::AlignedBox3d shownBox(const Drawing& drawing) {
       for (const DrawnSegment& s : part.segments) along.push_back(s.start[axis]);
     }
     if (along.empty()) return box;
-    path.min()[axis] = quantile(along, 0.01), path.max()[axis] = quantile(along, 0.99);
+    path.min()[axis] = nearestQuantile(along, 0.01), path.max()[axis] = nearestQuantile(along, 0.99);
   }
   return box.extend(path);
 }

@@ -266,7 +266,7 @@ TEST_F(MapExport, UnknownExtensionsAndParametersAreNamed) {
   ExportParams params;
   params.radius_m = std::nan("");
   EXPECT_THROW(exportMap(kRoom, in("map.ply"), params), ExportError);
-  EXPECT_EQ(filesInFolder(), 0);
+  EXPECT_EQ(folder_.entries(), 0);
   EXPECT_NO_THROW(exportMap(kRoom, in("MAP.PLY")));
 }
 
@@ -301,7 +301,7 @@ TEST_P(EveryFormat, ReportsAFullDiskAndLeavesNoFile) {
   std::filesystem::create_symlink("/dev/full", map());
   EXPECT_THROW(exportMap(kRoom, map()), ExportError);
   std::filesystem::remove(map());
-  EXPECT_EQ(filesInFolder(), 0);
+  EXPECT_EQ(folder_.entries(), 0);
 }
 
 TEST_P(EveryFormat, CopesWithExtremeNumbers) {

@@ -122,7 +122,7 @@ class ViewerPage : public FolderTest {
                                      what,
                                      "file://" + page};
     if (::geteuid() == 0) command.insert(command.begin() + 1, "--no-sandbox");  // its sandbox refuses root
-    return runChild({command, "", "", {"HOME=" + folder_.string()}});
+    return runChild({command, "", "", {"HOME=" + folder_.path().string()}});
   }
 
   /// The page as a user works through it.

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "lintel/factors/LineFactor.h"
 
-#include <algorithm>
 #include <cmath>
 
+#include "lintel/factors/LineDistances.h"
 #include "lintel/geometry/Rotation.h"
 
 namespace lintel {
@@ -15,19 +15,15 @@ void LineFactor::linearise(const CameraView& view, const double* correction, con
   const double cosine = std::cos(line.phi), sine = std::sin(line.phi);
   const Eigen::Vector3d n_w = cosine * U.col(0), d_w = sine * U.col(1), from_camera_w = origin_w_ - view.p_w_c;
   const Eigen::Vector3d l = view.R_c_w * (n_w + from_camera_w.cross(d_w));  // moment about the camera, its axes
-  const double m = std::max(l.head<2>().norm(), 1e-12);
-
   const Eigen::Vector3d ends[2] = {start_.corrected(correction).homogeneous(),
                                    end_.corrected(correction).homogeneous()};
-  const Eigen::Vector2d normal = l.head<2>() / m;
-  Eigen::Matrix<double, 2, 3> d_l;  // d r / d l
-  for (int k = 0; k < 2; ++k) {
-    const double distance = ends[k].dot(l) / m;
-    out.residual[k] = weight_ * distance;
-    d_l.row(k) = weight_ / m * (ends[k].transpose() - distance * Eigen::RowVector3d(normal.x(), normal.y(), 0));
-  }
+  const LineDistances distances(ends, l, weight_);
+  out.residual = distances.residual;
   if (!jacobians) return;
 
+  const Eigen::Vector2d& normal = distances.normal;
+  Eigen::Matrix<double, 2, 3> d_l;
+  d_l << distances.d_l[0], distances.d_l[1];
   const Eigen::Matrix<double, 2, 3> d_nw = d_l * view.R_c_w;
   out.d_camera.leftCols<3>() = d_nw * skew(d_w);
   out.d_camera.rightCols<3>() = d_l * skew(l);

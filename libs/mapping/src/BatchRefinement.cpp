@@ -7,9 +7,10 @@
 #include <stdexcept>
 
 #include "BatchProblem.h"
-#include "LineExtent.h"
+#include "Evidence.h"
 #include "LineGroups.h"
 #include "MapFitting.h"
+#include "lintel/core/Quantiles.h"
 #include "lintel/geometry/Rotation.h"
 #include "lintel/mapping/MapBuilder.h"
 
@@ -35,15 +36,10 @@ std::vector<ParallelLines> parallelLines(const MapParams& params, const MapMater
   return groups;
 }
 
-/// Every n-th point track has no part in the adjustment and judges it.
+/// Whether a point track is held out: every n-th is left out of the adjustment, and its error tells how good that is.
 bool isHeldOut(const PointRecord& point, double share) {
   const auto period = static_cast<std::uint64_t>(std::lround(1 / std::max(share, 1e-6)));
   return share > 0 && point.id % std::max<std::uint64_t>(2, period) == 1;
-}
-
-std::size_t inliersOf(const PointRecord& point) {
-  return static_cast<std::size_t>(
-      std::count_if(point.views.begin(), point.views.end(), [](const PointView& v) { return v.inlier; }));
 }
 
 /// Median over the held-out points of their mean error, estimated with the given cameras.
@@ -59,9 +55,7 @@ double heldOutError(const MapParams& map, const MapMaterial& cameras_of, std::ve
     point.known = false;
     errors.push_back(fitPoint(cameras, fit, point) ? point.error_px : fit.max_error_px);
   }
-  if (errors.empty()) return 0;
-  std::nth_element(errors.begin(), errors.begin() + static_cast<std::ptrdiff_t>(errors.size() / 2), errors.end());
-  return errors[errors.size() / 2];
+  return errors.empty() ? 0 : upperMedian(errors);
 }
 
 /// How far keyframes moved; every run about its own first keyframe, which is held.
@@ -95,7 +89,7 @@ std::string objection(const MapMaterial& after, const EstimatorParams& estimator
   if (!isFinite(after)) return "the adjustment diverged";
   if (!(report.cost_after <= report.cost_before)) return "the adjustment did not lower its cost";
   if (report.held_out_after_px > 1.02 * report.held_out_before_px + 0.01)
-    return text("points that had no part in it fit worse (%.3f px, before %.3f px)", report.held_out_after_px,
+    return text("points left out of it fit worse (%.3f px, before %.3f px)", report.held_out_after_px,
                 report.held_out_before_px);
   if (report.imu_after > std::max(params.max_imu_error, report.imu_before))
     return text("the IMU contradicts it (%.1f standard deviations)", report.imu_after);
@@ -167,8 +161,7 @@ RefinementReport BatchRefinement::adjust(MapMaterial& material, const Refinement
     const bool last = round + 1 == params_.rounds;
     if (round > 0) report.merged += fitting.merge(last ? 0 : map_.merge.max_drift_px);
     std::vector<bool> use_point, use_line;
-    for (const PointRecord& p : material.points)
-      use_point.push_back(p.known && static_cast<int>(inliersOf(p)) >= params_.min_views);
+    for (const PointRecord& p : material.points) use_point.push_back(p.known && inliersOf(p) >= params_.min_views);
     for (const LineRecord& l : material.lines)
       use_line.push_back(params_.lines && l.known && keyframesOf(l) >= params_.min_views &&
                          l.estimate.sigmaDirection() <= params_.line_max_sigma_direction_rad &&

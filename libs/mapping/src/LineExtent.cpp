@@ -2,12 +2,36 @@
 #include "LineExtent.h"
 
 #include <algorithm>
+#include <cmath>
 #include <map>
+#include <vector>
 
-#include "LineFitting.h"
-#include "lintel/mapping/SegmentEnds.h"
+#include "LineViews.h"
 
 namespace lintel {
+
+std::optional<std::pair<double, double>> coveredStretch(const std::vector<std::pair<double, double>>& intervals,
+                                                        double share) {
+  const int needed = std::max(2, static_cast<int>(std::ceil(share * static_cast<double>(intervals.size()))));
+  std::vector<std::pair<double, int>> events;  // place, +1 where an interval begins and -1 where it ends
+  for (const auto& [a, b] : intervals) {
+    events.emplace_back(std::min(a, b), +1);
+    events.emplace_back(std::max(a, b), -1);
+  }
+  std::sort(events.begin(), events.end(),
+            [](const auto& x, const auto& y) { return x.first != y.first ? x.first < y.first : x.second > y.second; });
+  std::optional<double> from;
+  double to = 0;
+  int depth = 0;
+  for (const auto& [place, change] : events) {
+    const int before = depth;
+    depth += change;
+    if (before < needed && depth >= needed && !from) from = place;
+    if (before >= needed && depth < needed) to = place;
+  }
+  if (!from || !(to > *from)) return std::nullopt;
+  return std::make_pair(*from, to);
+}
 
 std::optional<std::pair<double, double>> seenStretch(const KeyframeCameras& cameras, const LineRecord& line,
                                                      double share) {
@@ -38,19 +62,6 @@ Segment3 segmentOf(const KeyframeCameras& cameras, const LineRecord& line, const
     break;
   }
   return forward ? Segment3{at(stretch.first), at(stretch.second)} : Segment3{at(stretch.second), at(stretch.first)};
-}
-
-int inliersOf(const LineRecord& line) {
-  return static_cast<int>(
-      std::count_if(line.views.begin(), line.views.end(), [](const LineView& v) { return v.inlier; }));
-}
-
-int keyframesOf(const LineRecord& line) {
-  std::vector<FrameId> ids;
-  for (const LineView& v : line.views)
-    if (v.inlier) ids.push_back(v.keyframe);
-  std::sort(ids.begin(), ids.end());
-  return static_cast<int>(std::unique(ids.begin(), ids.end()) - ids.begin());
 }
 
 }  // namespace lintel

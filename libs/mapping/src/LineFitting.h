@@ -19,17 +19,9 @@ struct LineFitParams {
 /// former estimate, whichever fits better), robust refinement, outliers marked. Sets everything of `line` but id and
 /// group. False (and `known` false) when fewer than two views in different keyframes agree.
 ///
-/// With middle m, unit direction d and a basis B across d, the residual of a view's end x on the normalised plane is
-///   l = R_c_w ((m - p_w_c) x d),   r = weight x^T l / |l_xy|,   m <- m + B a,  d <- d + B b
+/// With middle m, unit direction d and a basis B across d, the residual (LineDistances.h) is that of
+///   l = R_c_w ((m - p_w_c) x d),   m <- m + B a,  d <- d + B b
 /// so that the covariance of (a, b) is in metres and radians.
 bool fitLine(const KeyframeCameras& cameras, const LineFitParams& params, LineRecord& line);
-
-/// Distance [px] of a view's farther end from the projected line; infinity when the line is not in front of the camera.
-double viewError(const KeyframeCameras& cameras, const LineEstimate& line, const LineView& view);
-
-/// Where on the line a view's ends lie, metres from the middle; false when that cannot be said: behind the camera, or
-/// at a grazing angle, where a small error of the direction moves the place far.
-bool viewStretch(const KeyframeCameras& cameras, const LineEstimate& line, const LineView& view,
-                 std::pair<double, double>& stretch);
 
 }  // namespace lintel

@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "LineGroups.h"
 
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 #include <numeric>
+
+#include "lintel/geometry/SmallMatrices.h"
 
 namespace lintel {
 
@@ -68,7 +69,7 @@ class GroupFinder {
     for (std::size_t i = 0; i < lines_.size(); ++i)
       if (isMember(i, axis)) scatter += weightOf(lines_[i]) * directions_[i] * directions_[i].transpose();
     if (scatter.isZero()) return axis;
-    Eigen::Vector3d mean = Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(scatter).eigenvectors().col(2);
+    Eigen::Vector3d mean = symmetricEigen(scatter).vectors.col(2);
     Eigen::Index largest;
     mean.cwiseAbs().maxCoeff(&largest);
     if (mean[largest] < 0) mean = -mean;  // the sign means nothing; this one is always the same

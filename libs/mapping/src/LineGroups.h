@@ -12,8 +12,8 @@ namespace lintel {
 /// them and sets `group` of every line.
 std::vector<MapGroup> findGroups(const GroupParams& params, std::vector<MapLine>& lines);
 
-/// How parallel a group is, as a standard deviation: its spread, but by chance members may look more parallel than they
-/// are.
+/// How parallel a group is, as a standard deviation: its spread, or a lower limit, since a few members may look more
+/// parallel by chance than they are.
 double sigmaOf(const MapGroup& group);
 
 /// Whether each group of a map is one of the scene: a tenth of the map's length at least. Among lines of all directions

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include "Evidence.h"
 #include "LineExtent.h"
 
 namespace lintel {

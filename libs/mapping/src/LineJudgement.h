@@ -9,7 +9,7 @@
 
 namespace lintel {
 
-/// What is to be thought of a line's estimate.
+/// How well a line is known.
 enum class LineState {
   kNoEvidence,  ///< too few views that agree
   kDegenerate,  ///< its views leave the direction or the place open

@@ -1,22 +1,26 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "LineMerging.h"
 
-#include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
-#include <numeric>
+#include <tuple>
 
+#include "Evidence.h"
 #include "LineExtent.h"
+#include "LineViews.h"
+#include "MergedRecords.h"
 #include "SpatialIndex.h"
 #include "lintel/geometry/Rotation.h"
 #include "lintel/geometry/Segment.h"
+#include "lintel/geometry/SmallMatrices.h"
 
 namespace lintel {
 
 namespace {
 
 constexpr double kCell_m = 0.3;
-constexpr double kApart = 200;  // squared standard deviations between two estimates that hardly ever come together
+constexpr double kApart =
+    200;  // squared standard deviations between two estimates: farther apart they are not compared
 
 struct Candidate {
   double score = 0;
@@ -24,9 +28,8 @@ struct Candidate {
   bool operator<(const Candidate& o) const { return std::tie(score, a, b) < std::tie(o.score, o.a, o.b); }
 };
 
-/// How far apart two lines are in space, squared, in standard deviations: their positions and directions across `a`
-/// where that was seen.
-double apartness(const LineEstimate& a, const LineEstimate& b) {
+/// Squared Mahalanobis distance of two lines: of their positions, where `a` was seen, and directions, both across `a`.
+double mahalanobis2(const LineEstimate& a, const LineEstimate& b) {
   const Eigen::Matrix<double, 3, 2> B = tangentBasis(a.direction_w);
   const double along = (a.middle_w - b.middle_w).dot(a.direction_w) / b.direction_w.dot(a.direction_w);
   const Eigen::Vector3d nearest = b.middle_w + along * b.direction_w;
@@ -37,7 +40,7 @@ double apartness(const LineEstimate& a, const LineEstimate& b) {
   Eigen::Matrix4d move;
   move << turn, along * turn, Eigen::Matrix2d::Zero(), turn;
   const Eigen::Matrix4d covariance = a.covariance + move * b.covariance * move.transpose();
-  return difference.dot(covariance.ldlt().solve(difference));
+  return difference.dot(solveLdlt(covariance, difference));
 }
 
 class LineMerger {
@@ -49,27 +52,22 @@ class LineMerger {
         params_(params),
         drift_px_(drift_px),
         lines_(lines),
-        roots_(lines.size()),
+        merged_(lines.size()),
         segments_(lines.size()) {
-    std::iota(roots_.begin(), roots_.end(), std::size_t{0});
     for (std::size_t i = 0; i < lines.size(); ++i) segments_[i] = drawn(lines[i]);
   }
 
   int run() {
     int merged = 0;
     const std::vector<Candidate> all = candidates();
-    for (const Candidate& candidate : all) merged += tryMerge(rootOf(candidate.a), rootOf(candidate.b), 0);
+    for (const Candidate& candidate : all)
+      merged += tryMerge(merged_.rootOf(candidate.a), merged_.rootOf(candidate.b), 0);
     if (drift_px_ > 0) {
       findRivals(all);
-      for (const Candidate& candidate : all) merged += tryMerge(rootOf(candidate.a), rootOf(candidate.b), drift_px_);
+      for (const Candidate& candidate : all)
+        merged += tryMerge(merged_.rootOf(candidate.a), merged_.rootOf(candidate.b), drift_px_);
     }
-    std::size_t kept = 0;
-    for (std::size_t i = 0; i < lines_.size(); ++i) {
-      if (roots_[i] != i) continue;
-      if (kept != i) lines_[kept] = std::move(lines_[i]);
-      ++kept;
-    }
-    lines_.resize(kept);
+    merged_.compact(lines_);
     return merged;
   }
 
@@ -80,11 +78,6 @@ class LineMerger {
     if (!line.known) return {};
     const auto stretch = seenStretch(cameras_, line, kCoverage);
     return stretch ? segmentOf(cameras_, line, *stretch) : Segment3{};
-  }
-
-  std::size_t rootOf(std::size_t i) const {
-    while (roots_[i] != i) i = roots_[i];
-    return i;
   }
 
   std::vector<Candidate> candidates() const {
@@ -106,7 +99,7 @@ class LineMerger {
     return result;
   }
 
-  /// The cheap conditions on two segments; `score`: less is more alike.
+  /// The conditions on two segments that are quick to check; `score`: lower is more alike.
   bool near(std::size_t a, std::size_t b, double& score) const {
     const LineRecord &la = lines_[a], &lb = lines_[b];
     const Segment3 &sa = segments_[a], &sb = segments_[b];
@@ -128,53 +121,35 @@ class LineMerger {
     return true;
   }
 
-  /// Whether some image shows them as two.
-  bool seenApart(const LineRecord& a, const LineRecord& b) const {
-    int apart = 0, together = 0;
-    for (auto i = a.views.begin(), j = b.views.begin(); i != a.views.end() && j != b.views.end();) {
-      if (i->keyframe != j->keyframe) {
-        i->keyframe < j->keyframe ? ++i : ++j;
-        continue;
-      }
-      for (auto k = j; k != b.views.end() && k->keyframe == i->keyframe; ++k) {
-        const double px = separation({i->start_px, i->end_px}, {k->start_px, k->end_px});
-        if (px >= 0) ++(px > params_.min_separation_px ? apart : together);
-      }
-      ++i;
-    }
-    return apart > 0 && 2 * apart > together;
+  /// Whether images show them as two lines.
+  bool areSeenAsTwo(const LineRecord& a, const LineRecord& b) const {
+    const SideBySide seen = sideBySide(a.views, b.views, &LineView::keyframe, params_.min_separation_px);
+    return seen.apart > 0 && 2 * seen.apart > seen.together;
   }
 
   /// For every line the candidates that are left after merging without drift.
   void findRivals(const std::vector<Candidate>& candidates) {
     rivals_.assign(lines_.size(), {});
     for (const Candidate& candidate : candidates) {
-      const std::size_t a = rootOf(candidate.a), b = rootOf(candidate.b);
+      const std::size_t a = merged_.rootOf(candidate.a), b = merged_.rootOf(candidate.b);
       if (a != b) rivals_[a].push_back(b), rivals_[b].push_back(a);
     }
   }
 
-  /// Whether of all lines only `b` can be meant by `a`: others nearly as close would have to be the same as `b`.
+  /// Whether `b` is the only line that `a` can be the same as: other lines nearly as close are the same as `b`.
   bool isUnmistakable(std::size_t a, std::size_t b, double score) const {
     constexpr double kRatio = 2;
     return std::all_of(rivals_[a].begin(), rivals_[a].end(), [&](std::size_t rival) {
-      const std::size_t c = rootOf(rival);
+      const std::size_t c = merged_.rootOf(rival);
       double other = 0;
-      return c == a || c == b || !near(a, c, other) || other > kRatio * score || !seenApart(lines_[b], lines_[c]);
+      return c == a || c == b || !near(a, c, other) || other > kRatio * score || !areSeenAsTwo(lines_[b], lines_[c]);
     });
   }
 
-  /// Tracks keep the brighter side on one side: start and end of what is the same edge follow each other.
+  /// The brighter side of a track is always on the same side of its direction, so that two tracks of one edge run the
+  /// same way.
   bool runTheSameWay(std::size_t a, std::size_t b) const {
     return segments_[a].direction().dot(segments_[b].direction()) > 0;
-  }
-
-  static bool shareKeyframes(const LineRecord& a, const LineRecord& b) {
-    for (auto i = a.views.begin(), j = b.views.begin(); i != a.views.end() && j != b.views.end();) {
-      if (i->keyframe == j->keyframe) return true;
-      i->keyframe < j->keyframe ? ++i : ++j;
-    }
-    return false;
   }
 
   bool tryMerge(std::size_t a, std::size_t b, double drift_px) {
@@ -182,18 +157,16 @@ class LineMerger {
     if (b < a) std::swap(a, b);
     const LineRecord &la = lines_[a], &lb = lines_[b];
     double score = 0;
-    if (!near(a, b, score) || seenApart(la, lb)) return false;
-    if (drift_px == 0 && apartness(la.estimate, lb.estimate) > kApart) return false;
-    if (drift_px > 0 && (shareKeyframes(la, lb) || !runTheSameWay(a, b) || !isUnmistakable(a, b, score) ||
-                         !isUnmistakable(b, a, score)))
+    if (!near(a, b, score) || areSeenAsTwo(la, lb)) return false;
+    if (drift_px == 0 && mahalanobis2(la.estimate, lb.estimate) > kApart) return false;
+    if (drift_px > 0 &&
+        (shareKeyframe(la, lb) || !runTheSameWay(a, b) || !isUnmistakable(a, b, score) || !isUnmistakable(b, a, score)))
       return false;
     LineRecord joint = la;
     joint.id = std::min(la.id, lb.id);
-    joint.views.clear();
-    std::merge(la.views.begin(), la.views.end(), lb.views.begin(), lb.views.end(), std::back_inserter(joint.views),
-               [](const LineView& x, const LineView& y) { return x.keyframe < y.keyframe; });
+    joint.views = mergedViews(la.views, lb.views);
     if (lb.views.size() > la.views.size()) joint.estimate = lb.estimate;
-    if (!lb.tie) joint.tie.reset();  // one that knows itself is enough
+    if (!lb.tie) joint.tie.reset();  // it is enough that one is known from its views
     joint.parallel = la.parallel || lb.parallel;
     LineFitParams fit = fit_;
     fit.max_error_px += drift_px;
@@ -201,11 +174,11 @@ class LineMerger {
     lines_[a] = std::move(joint);
     segments_[a] = drawn(lines_[a]);
     lines_[b] = {};
-    roots_[b] = a;
+    merged_.join(a, b);
     return true;
   }
 
-  /// Whether one line does for both: hardly any view is lost and errors stay small.
+  /// Whether one line explains the views of both: hardly any becomes an outlier and errors stay small.
   bool explains(const LineRecord& joint, const LineRecord& a, const LineRecord& b, double drift_px) const {
     const std::ptrdiff_t before_a = inliersOf(a), before_b = inliersOf(b);
     // both must be explained, also where one has many more views than the other
@@ -216,10 +189,11 @@ class LineMerger {
       return n;
     };
     if (10 * kept(a) < 8 * before_a || 10 * kept(b) < 8 * before_b) return false;
-    const double alone = (a.error_px * static_cast<double>(before_a) + b.error_px * static_cast<double>(before_b)) /
-                         std::max<double>(1, static_cast<double>(before_a + before_b));
-    // a line at a depth in between may nearly do for two: little may be lost against what they have alone
-    return joint.error_px <= std::max(std::min(params_.max_error_px, 1.3 * alone + 0.3), 1.1 * alone) + 0.5 * drift_px;
+    const double separate = (a.error_px * static_cast<double>(before_a) + b.error_px * static_cast<double>(before_b)) /
+                            std::max<double>(1, static_cast<double>(before_a + before_b));
+    // a line at a depth in between may nearly fit both: the error may be little larger than that of separate fits
+    return joint.error_px <=
+           std::max(std::min(params_.max_error_px, 1.3 * separate + 0.3), 1.1 * separate) + 0.5 * drift_px;
   }
 
   const KeyframeCameras& cameras_;
@@ -227,7 +201,7 @@ class LineMerger {
   const MergeParams& params_;
   double drift_px_;
   std::vector<LineRecord>& lines_;
-  std::vector<std::size_t> roots_;
+  MergedRecords merged_;
   std::vector<Segment3> segments_;
   std::vector<std::vector<std::size_t>> rivals_;
 };

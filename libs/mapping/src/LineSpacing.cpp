@@ -8,6 +8,7 @@
 
 #include "LineGroups.h"
 #include "SpatialIndex.h"
+#include "lintel/core/Quantiles.h"
 #include "lintel/geometry/Segment.h"
 
 namespace lintel {
@@ -15,9 +16,9 @@ namespace lintel {
 namespace {
 
 constexpr double kParallel_rad = 0.26;  // 15 degrees
-constexpr double kMuchBetter = 3;       // times as well seen: such a line clears twice the width
+constexpr double kMuchBetter = 3;       // times the evidence: such a line suppresses others within twice the width
 constexpr double kBeside = 0.5;         // share of a line that runs beside others
-constexpr int kMostSamples = 2000;      // of runaway lines
+constexpr int kMostSamples = 2000;      // of a line, however long
 
 class LineSpacer {
  public:
@@ -43,16 +44,14 @@ class LineSpacer {
   }
 
  private:
-  /// How far to both sides a line wants to be alone [m].
+  /// Within how far of a line weaker ones are left out [m].
   double widthOf(const MapLine& line, const std::map<std::uint64_t, Eigen::Vector3d>& cameras) const {
     std::vector<double> distances;
     for (const MapLineObservation& seen : line.observations)
       if (const auto it = cameras.find(seen.keyframe_id); it != cameras.end())
         distances.push_back(distanceToSegment(it->second, line.segment_w));
     if (distances.empty()) return params_.min_m;
-    const auto middle = distances.begin() + static_cast<std::ptrdiff_t>(distances.size() / 2);
-    std::nth_element(distances.begin(), middle, distances.end());
-    return std::min(params_.min_m, params_.min_relative * *middle);
+    return std::min(params_.min_m, params_.min_relative * upperMedian(distances));
   }
 
   std::vector<std::vector<std::size_t>> neighbours() const {

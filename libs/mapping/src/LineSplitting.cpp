@@ -8,8 +8,8 @@ namespace lintel {
 
 namespace {
 
-/// The tracks of a line that it does not explain; never all of them.
-std::vector<TrackId> strangers(const LineRecord& line) {
+/// The tracks of a line most of whose views are outliers; never all of them.
+std::vector<TrackId> unexplainedTracks(const LineRecord& line) {
   struct Count {
     int views = 0, inliers = 0;
   };
@@ -30,15 +30,15 @@ int splitLines(std::vector<LineRecord>& lines) {
   std::vector<LineRecord> separate;
   for (LineRecord& line : lines) {
     if (!line.known) continue;
-    for (const TrackId track : strangers(line)) {
+    for (const TrackId track : unexplainedTracks(line)) {
       const auto others = std::stable_partition(line.views.begin(), line.views.end(),
                                                 [&](const LineView& v) { return v.track != track; });
-      LineRecord alone;
-      alone.id = next++;
-      alone.parallel = line.parallel;
-      alone.views.assign(others, line.views.end());
+      LineRecord split;
+      split.id = next++;
+      split.parallel = line.parallel;
+      split.views.assign(others, line.views.end());
       line.views.erase(others, line.views.end());
-      separate.push_back(std::move(alone));
+      separate.push_back(std::move(split));
     }
   }
   const auto count = static_cast<int>(separate.size());

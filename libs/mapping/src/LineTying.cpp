@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "LineTying.h"
 
-#include "LineExtent.h"
+#include "Evidence.h"
 #include "LineGroups.h"
 #include "LineJudgement.h"
 #include "PointsOnLines.h"
@@ -11,15 +11,15 @@ namespace lintel {
 namespace {
 
 constexpr double kLeastInliers = 0.9;  // share of a line's views that must still agree
-constexpr double kMoreError_px = 0.3;  // by which they may agree less
+constexpr double kMoreError_px = 0.3;  // that the tie may add to the mean error
 
-/// Whether the tied line does for the views as well as the free one.
+/// Whether the tied line explains the views as well as the free one.
 bool viewsAgree(const LineRecord& tied, const LineRecord& free) {
   const int before = free.known ? inliersOf(free) : static_cast<int>(free.views.size());
   return inliersOf(tied) >= kLeastInliers * before && tied.error_px <= (free.known ? free.error_px : 0) + kMoreError_px;
 }
 
-/// Ties a line to the group whose direction its views like best.
+/// Ties a line to the group whose direction fits its views best.
 bool tieToBest(const KeyframeCameras& cameras, const LineFitParams& fit, const std::vector<MapGroup>& groups,
                const PointsOnLines& points, LineRecord& line) {
   std::optional<LineRecord> best;

@@ -18,7 +18,7 @@ class MapFitting {
   /// Joins what is the same; returns how many landmarks went. `drift_px`: see mergeLines.
   int merge(double drift_px = 0);
 
-  /// Ties degenerate lines to the groups of those that know their directions.
+  /// Ties degenerate lines to groups of parallel lines whose directions are known.
   void tie();
 
   const KeyframeCameras& cameras() const { return cameras_; }

@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "PointFitting.h"
 
-#include <Eigen/Cholesky>
 #include <cmath>
 #include <limits>
+
+#include "lintel/geometry/SmallLeastSquares.h"
+#include "lintel/geometry/SmallMatrices.h"
 
 namespace lintel {
 
@@ -22,21 +24,14 @@ struct Homogeneous {
   double w = 0;
 };
 
-struct Normal {
-  Eigen::Matrix4d H = Eigen::Matrix4d::Zero();
-  Eigen::Vector4d b = Eigen::Vector4d::Zero();
-  double cost = 0;
-  bool in_front = true;
-};
-
-Normal normalEquations(const std::vector<FitView>& views, const Eigen::Vector3d& origin_w, const Homogeneous& point,
-                       double weight, double loss_width) {
-  Normal normal;
+/// The cost is infinite when the point is not in front of all cameras.
+NormalEquations4 normalEquations(const std::vector<FitView>& views, const Eigen::Vector3d& origin_w,
+                                 const Homogeneous& point, double weight, double loss_width) {
+  NormalEquations4 normal;
   const double width2 = loss_width * loss_width;
   for (const FitView& v : views) {
     const Eigen::Vector3d baseline = v.R_c_w * (origin_w - v.p_w_c), g = v.R_c_w * point.X + point.w * baseline;
     if (g.z() < 1e-3) {
-      normal.in_front = false;
       normal.cost = std::numeric_limits<double>::infinity();
       return normal;
     }
@@ -48,8 +43,7 @@ Normal normalEquations(const std::vector<FitView>& views, const Eigen::Vector3d&
     J << d_g * v.R_c_w, d_g * baseline;
     const double s = r.squaredNorm() / width2, w = 1 / (1 + s);
     normal.cost += 0.5 * width2 * std::log1p(s);
-    normal.H += w * J.transpose() * J;
-    normal.b += w * J.transpose() * r;
+    normal.add(J, r, w);
   }
   // the scale of (X, w) is free: hold |X|
   Eigen::Vector4d along;
@@ -80,30 +74,22 @@ bool estimate(const std::vector<FitView>& views, const PointFitParams& params, d
     if (arm.norm() > params.min_depth_m) h = {arm.normalized(), 1 / arm.norm()};
   }
   const double weight = focal / params.sigma_px;
-  Normal now = normalEquations(views, origin_w, h, weight, params.loss_width);
-  if (!now.in_front) return false;
-  double damping = 1e-4;
-  for (int i = 0; i < 12; ++i) {
-    Eigen::Matrix4d H = now.H;
-    H.diagonal() *= 1 + damping;
-    const Eigen::Vector4d step = -H.ldlt().solve(now.b);
-    Homogeneous moved{h.X + step.head<3>(), h.w + step[3]};
-    const double size = moved.X.norm();
-    moved.X /= size, moved.w /= size;
-    const Normal next = normalEquations(views, origin_w, moved, weight, params.loss_width);
-    if (next.in_front && next.cost < now.cost) {
-      const bool converged = now.cost - next.cost < 1e-6 * now.cost;
-      h = moved, now = next;
-      damping *= 0.1;
-      if (converged) break;
-    } else {
-      damping *= 10;
-      if (damping > 1e6) break;
-    }
-  }
+  LevenbergParams levenberg;
+  levenberg.max_iterations = 12;
+  const auto linearise = [&](const Homogeneous& p) {
+    return normalEquations(views, origin_w, p, weight, params.loss_width);
+  };
+  const auto moved = [](const Homogeneous& p, const Eigen::Vector4d& step) {
+    Homogeneous result{p.X + step.head<3>(), p.w + step[3]};
+    const double size = result.X.norm();
+    result.X /= size, result.w /= size;
+    return result;
+  };
+  const NormalEquations4 end = levenbergMarquardt(levenberg, h, linearise, moved);
+  if (!std::isfinite(end.cost)) return false;
   if (h.w < 1 / params.max_depth_m) return false;
   point.p_w = origin_w + h.X / h.w;
-  const double variance = now.H.ldlt().solve(Eigen::Vector4d::Unit(3))[3];
+  const double variance = solveLdlt<4>(end.H, Eigen::Vector4d::Unit(3))[3];
   point.sigma_distance_m = std::sqrt(std::max(0.0, variance)) / (h.w * h.w);
   return point.p_w.allFinite() && std::isfinite(point.sigma_distance_m);
 }

@@ -3,9 +3,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 #include <tuple>
 
+#include "Evidence.h"
+#include "MergedRecords.h"
 #include "SpatialIndex.h"
 
 namespace lintel {
@@ -13,14 +14,6 @@ namespace lintel {
 namespace {
 
 constexpr double kCell_m = 0.1;
-
-bool shareKeyframe(const PointRecord& a, const PointRecord& b) {
-  for (auto i = a.views.begin(), j = b.views.begin(); i != a.views.end() && j != b.views.end();) {
-    if (i->keyframe == j->keyframe) return true;
-    i->keyframe < j->keyframe ? ++i : ++j;
-  }
-  return false;
-}
 
 struct Candidate {
   double distance_m = 0;
@@ -30,7 +23,7 @@ struct Candidate {
 
 /// Whether the position of one is where the other was seen, in pixels: as a first look.
 bool projectsOnto(const KeyframeCameras& cameras, const PointRecord& a, const PointRecord& b, double most_px) {
-  const auto n = std::count_if(b.views.begin(), b.views.end(), [](const PointView& v) { return v.inlier; });
+  const int n = inliersOf(b);
   const double most = most_px * static_cast<double>(n);
   double sum = 0;
   for (auto v = b.views.begin(); v != b.views.end() && sum <= most; ++v)
@@ -49,42 +42,28 @@ int mergePoints(const KeyframeCameras& cameras, const PointFitParams& fit, const
   for (const auto& [a, b] : index.pairs()) candidates.push_back({(points[a].p_w - points[b].p_w).norm(), a, b});
   std::sort(candidates.begin(), candidates.end());
 
-  std::vector<std::size_t> roots(points.size());
-  std::iota(roots.begin(), roots.end(), std::size_t{0});
-  const auto root = [&](std::size_t i) {
-    while (roots[i] != i) i = roots[i];
-    return i;
-  };
+  MergedRecords records(points.size());
   int merged = 0;
   for (const Candidate& candidate : candidates) {
-    const std::size_t a = std::min(root(candidate.a), root(candidate.b)),
-                      b = std::max(root(candidate.a), root(candidate.b));
+    const std::size_t a = std::min(records.rootOf(candidate.a), records.rootOf(candidate.b)),
+                      b = std::max(records.rootOf(candidate.a), records.rootOf(candidate.b));
     if (a == b || shareKeyframe(points[a], points[b])) continue;
     const double most_px = 3 * params.point_max_error_px;
     if (!projectsOnto(cameras, points[a], points[b], most_px) || !projectsOnto(cameras, points[b], points[a], most_px))
       continue;
     PointRecord joint = points[a];
     joint.id = std::min(points[a].id, points[b].id);
-    joint.views.clear();
-    std::merge(points[a].views.begin(), points[a].views.end(), points[b].views.begin(), points[b].views.end(),
-               std::back_inserter(joint.views),
-               [](const PointView& x, const PointView& y) { return x.keyframe < y.keyframe; });
-    const double alone = std::max(points[a].error_px, points[b].error_px);
-    if (!fitPoint(cameras, fit, joint) || joint.error_px > std::min(params.point_max_error_px, 1.3 * alone + 0.3) ||
+    joint.views = mergedViews(points[a].views, points[b].views);
+    const double separate = std::max(points[a].error_px, points[b].error_px);
+    if (!fitPoint(cameras, fit, joint) || joint.error_px > std::min(params.point_max_error_px, 1.3 * separate + 0.3) ||
         std::any_of(joint.views.begin(), joint.views.end(), [](const PointView& v) { return !v.inlier; }))
       continue;
     points[a] = std::move(joint);
     points[b] = {};
-    roots[b] = a;
+    records.join(a, b);
     ++merged;
   }
-  std::size_t kept = 0;
-  for (std::size_t i = 0; i < points.size(); ++i) {
-    if (roots[i] != i) continue;
-    if (kept != i) points[kept] = std::move(points[i]);
-    ++kept;
-  }
-  points.resize(kept);
+  records.compact(points);
   return merged;
 }
 

@@ -13,8 +13,8 @@ class PointsOnLines {
   PointsOnLines(const KeyframeCameras& cameras, const std::vector<PointRecord>& points);
 
   /// Points that lie on a line of direction `direction_w`: on its views in nearly all keyframes that saw both, and,
-  /// where they are several, most of them on one parallel of that direction. Whether they go with the views, too, the
-  /// fit says.
+  /// where they are several, most of them on one parallel of that direction. Whether they agree with the views is for
+  /// the fit to tell.
   std::vector<PointOnLine> on(const LineRecord& line, const Eigen::Vector3d& direction_w) const;
 
  private:

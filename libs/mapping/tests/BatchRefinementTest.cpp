@@ -72,16 +72,20 @@ class BatchRefinementTest : public testing::Test {
         estimator_.calibration.refine_time_offset = false;
   }
 
-  double error(const MapMaterial& material) const {
+  Similarity alignment(const MapMaterial& material) const {
     std::vector<Eigen::Vector3d> estimate, truth;
     for (std::size_t i = 0; i < material.trajectory.size(); ++i) {
       estimate.push_back(material.trajectory[i].second.p);
       truth.push_back(flight_.frames[i].truth.state.T_w_b.p);
     }
-    const Similarity T = alignPositions(AlignmentKind::kYaw, estimate, truth);
+    return alignPositions(AlignmentKind::kYaw, estimate, truth);
+  }
+  double error(const MapMaterial& material) const {
+    const Similarity T = alignment(material);
     double sum = 0;
-    for (std::size_t i = 0; i < truth.size(); ++i) sum += (T * estimate[i] - truth[i]).squaredNorm();
-    return std::sqrt(sum / static_cast<double>(truth.size()));
+    for (std::size_t i = 0; i < material.trajectory.size(); ++i)
+      sum += (T * material.trajectory[i].second.p - flight_.frames[i].truth.state.T_w_b.p).squaredNorm();
+    return std::sqrt(sum / static_cast<double>(material.trajectory.size()));
   }
   RefinementReport refine(MapMaterial& material) const {
     return BatchRefinement(rig_, estimator_, {}, params_).refine(material);
@@ -132,12 +136,7 @@ TEST_F(BatchRefinementTest, ACancelledRefinementLeavesPosesAndEstimatesLandmarks
 
 TEST_F(BatchRefinementTest, LandmarksComeOutWhereTheyAre) {
   refine(material_);
-  std::vector<Eigen::Vector3d> estimate, truth;
-  for (std::size_t i = 0; i < material_.trajectory.size(); ++i) {
-    estimate.push_back(material_.trajectory[i].second.p);
-    truth.push_back(flight_.frames[i].truth.state.T_w_b.p);
-  }
-  const Similarity T = alignPositions(AlignmentKind::kYaw, estimate, truth);
+  const Similarity T = alignment(material_);
   int lines = 0;
   for (const MapLine& line : drawMap({}, material_).lines) {
     const Segment3& segment = flight_.lines_w[flight_.line_of_track[line.id]];

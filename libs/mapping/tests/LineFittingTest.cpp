@@ -3,7 +3,8 @@
 
 #include <gtest/gtest.h>
 
-#include "LineExtent.h"
+#include "Evidence.h"
+#include "LineViews.h"
 #include "TestMaterial.h"
 
 namespace lintel {

@@ -2,44 +2,27 @@
 #include "lintel/mapping/MapFile.h"
 
 #include <gtest/gtest.h>
-#include <unistd.h>
 #include <zlib.h>
 
 #include <algorithm>
 #include <cmath>
 #include <cstring>
-#include <filesystem>
 #include <fstream>
 #include <limits>
 #include <random>
 
+#include "lintel/testing/TempFolder.h"
+
 namespace lintel {
 namespace {
 
-namespace fs = std::filesystem;
-
 class MapFile : public ::testing::Test {
  protected:
-  void SetUp() override {
-    const auto* test = ::testing::UnitTest::GetInstance()->current_test_info();
-    folder_ = fs::temp_directory_path() / ("lintel_mapfile_" + std::string(test->name()) + std::to_string(::getpid()));
-    fs::create_directories(folder_);
-    path_ = (folder_ / "map.lintel").string();
-  }
-  void TearDown() override { fs::remove_all(folder_); }
-
-  std::size_t filesInFolder() const {
-    return static_cast<std::size_t>(std::distance(fs::directory_iterator(folder_), fs::directory_iterator()));
-  }
-
-  fs::path folder_;
-  std::string path_;
+  test::TempFolder folder_;
+  const std::string path_ = folder_ / "map.lintel";
 };
 
-std::string bytesOf(const std::string& path) {
-  std::ifstream file(path, std::ios::binary);
-  return {std::istreambuf_iterator<char>(file), {}};
-}
+using test::bytesOf;
 
 void put(const std::string& path, const std::string& bytes) { std::ofstream(path, std::ios::binary) << bytes; }
 
@@ -253,19 +236,19 @@ TEST_F(MapFile, ALaterVersionAndOtherFilesAreNamed) {
     }
   };
   EXPECT_NE(message(path_).find("format 9"), std::string::npos);
-  EXPECT_NE(message(folder_.string()).find(folder_.string()), std::string::npos);
+  EXPECT_NE(message(folder_.path().string()).find(folder_.path().string()), std::string::npos);
   EXPECT_NE(message(path_ + ".missing").find("No such file"), std::string::npos);
   put(path_, "id,x0,y0\n");
   EXPECT_NE(message(path_).find("does not begin"), std::string::npos);
 }
 
 TEST_F(MapFile, AFailedWriteLeavesTheOldFileAndNothingElse) {
-  EXPECT_THROW(writeMap({}, (folder_ / "missing" / "map.lintel").string()), MapFileError);
-  EXPECT_THROW(writeMap({}, folder_.string()), MapFileError);
+  EXPECT_THROW(writeMap({}, folder_ / "missing/map.lintel"), MapFileError);
+  EXPECT_THROW(writeMap({}, folder_.path().string()), MapFileError);
   EXPECT_THROW(writeMap(sampleMap(), "/dev/full"), MapFileError);
   EXPECT_EQ(filesInFolder(), 0u);
   writeMap(sampleMap(), path_);
-  EXPECT_EQ(filesInFolder(), 1u);
+  EXPECT_EQ(folder_.entries(), 1);
 }
 
 }  // namespace

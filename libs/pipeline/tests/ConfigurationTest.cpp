@@ -2,7 +2,6 @@
 #include "lintel/pipeline/Configuration.h"
 
 #include <gmock/gmock.h>
-#include <unistd.h>
 
 #include <cmath>
 #include <cstring>
@@ -12,10 +11,11 @@
 #include <regex>
 #include <type_traits>
 
+#include "lintel/testing/TempFolder.h"
+
 namespace lintel {
 namespace {
 
-namespace fs = std::filesystem;
 using testing::AllOf;
 using testing::HasSubstr;
 using testing::StartsWith;
@@ -57,13 +57,6 @@ class Leaves {
 
 class ConfigurationTest : public testing::Test {
  protected:
-  ConfigurationTest() {
-    std::string pattern = (fs::temp_directory_path() / "lintel_configuration_XXXXXX").string();
-    folder_ = mkdtemp(pattern.data());
-    file_ = (folder_ / "my.yaml").string();
-  }
-  ~ConfigurationTest() override { fs::remove_all(folder_); }
-
   Configuration read(const std::string& text) const {
     std::ofstream(file_) << text;
     Configuration configuration;
@@ -88,8 +81,8 @@ class ConfigurationTest : public testing::Test {
     return "no complaint";
   }
 
-  fs::path folder_;
-  std::string file_;
+  test::TempFolder folder_;
+  const std::string file_ = folder_ / "my.yaml";
 };
 
 TEST_F(ConfigurationTest, WhatIsDoneWithDegenerateLinesIsDoneInTheMapToo) {
@@ -174,7 +167,7 @@ TEST_F(ConfigurationTest, WhatIsNoYamlNamesFileAndLine) {
   EXPECT_THAT(complaintOf("estimator:\n  keyframes: [1, 2\nmap: }\n"),
               AllOf(StartsWith(file_ + ":"), HasSubstr("is not YAML")));
   Configuration configuration;
-  EXPECT_THROW(readConfiguration((folder_ / "absent.yaml").string(), configuration), ConfigurationError);
+  EXPECT_THROW(readConfiguration(folder_ / "absent.yaml", configuration), ConfigurationError);
 }
 
 TEST_F(ConfigurationTest, OptionsAreSetByTheirDottedKeys) {

@@ -2,13 +2,13 @@
 #include "lintel/programs/Euroc2Rawlog.h"
 
 #include <gmock/gmock.h>
-#include <unistd.h>
 
 #include <filesystem>
-#include <fstream>
 #include <sstream>
 #include <string>
 #include <vector>
+
+#include "lintel/testing/TempFolder.h"
 
 namespace lintel {
 namespace {
@@ -21,27 +21,20 @@ using testing::StartsWith;
 class Euroc2RawlogTest : public testing::Test {
  protected:
   Euroc2RawlogTest() {
-    std::string pattern = (fs::temp_directory_path() / "lintel_programs_XXXXXX").string();
-    folder_ = mkdtemp(pattern.data());
     const std::string pose =
         "T_BS: {cols: 4, rows: 4, data: [1.0, 0, 0, 0, 0, 1.0, 0, 0, 0, 0, 1.0, 0, 0, 0, 0, 1.0]}\n";
-    write("in/mav0/cam0/sensor.yaml", pose +
-                                          "rate_hz: 20\nresolution: [32, 24]\ncamera_model: pinhole\n"
-                                          "intrinsics: [30, 30, 16, 12]\ndistortion_model: radial-tangential\n"
-                                          "distortion_coefficients: [0, 0, 0, 0]\n");
-    write("in/mav0/cam0/data.csv", "#t,file\n1000000000,a.png\n1050000000,b.png\n");
-    write("in/mav0/cam0/data/a.png", "a");
-    write("in/mav0/cam0/data/b.png", "b");
-    write("in/mav0/imu0/sensor.yaml", pose +
-                                          "rate_hz: 200\ngyroscope_noise_density: 1e-4\ngyroscope_random_walk: 1e-5\n"
-                                          "accelerometer_noise_density: 1e-3\naccelerometer_random_walk: 1e-3\n");
-    write("in/mav0/imu0/data.csv", "1000000000,0,0,0,0,0,9.8\n1055000000,0,0,0,0,0,9.8\n");
-  }
-  ~Euroc2RawlogTest() override { fs::remove_all(folder_); }
-
-  void write(const std::string& name, const std::string& text) const {
-    fs::create_directories((folder_ / name).parent_path());
-    std::ofstream(folder_ / name) << text;
+    folder_.write("in/mav0/cam0/sensor.yaml", pose +
+                                                  "rate_hz: 20\nresolution: [32, 24]\ncamera_model: pinhole\n"
+                                                  "intrinsics: [30, 30, 16, 12]\ndistortion_model: radial-tangential\n"
+                                                  "distortion_coefficients: [0, 0, 0, 0]\n");
+    folder_.write("in/mav0/cam0/data.csv", "#t,file\n1000000000,a.png\n1050000000,b.png\n");
+    folder_.write("in/mav0/cam0/data/a.png", "a");
+    folder_.write("in/mav0/cam0/data/b.png", "b");
+    folder_.write("in/mav0/imu0/sensor.yaml",
+                  pose +
+                      "rate_hz: 200\ngyroscope_noise_density: 1e-4\ngyroscope_random_walk: 1e-5\n"
+                      "accelerometer_noise_density: 1e-3\naccelerometer_random_walk: 1e-3\n");
+    folder_.write("in/mav0/imu0/data.csv", "1000000000,0,0,0,0,0,9.8\n1055000000,0,0,0,0,0,9.8\n");
   }
   int run(std::vector<std::string> arguments) {
     std::vector<const char*> argv = {"euroc2rawlog"};
@@ -50,17 +43,17 @@ class Euroc2RawlogTest : public testing::Test {
     err_.str("");
     return runEuroc2Rawlog(static_cast<int>(argv.size()), argv.data(), out_, err_);
   }
-  std::string in() const { return (folder_ / "in").string(); }
-  std::string rawlog() const { return (folder_ / "out.rawlog").string(); }
+  std::string in() const { return folder_ / "in"; }
+  std::string rawlog() const { return folder_ / "out.rawlog"; }
 
-  fs::path folder_;
+  test::TempFolder folder_;
   std::ostringstream out_, err_;
 };
 
 TEST_F(Euroc2RawlogTest, WritesARawlogAndSaysWhat) {
   EXPECT_EQ(run({"-i", in(), "-o", rawlog()}), 0);
   EXPECT_TRUE(fs::exists(rawlog()));
-  EXPECT_TRUE(fs::exists(folder_ / "out_Images" / "cam0_b.png"));
+  EXPECT_TRUE(fs::exists(folder_ / "out_Images/cam0_b.png"));
   EXPECT_THAT(out_.str(), HasSubstr("out.rawlog: 0.06 s, 2 images cam0, 2 samples imu0\n"));
   EXPECT_THAT(out_.str(), HasSubstr("out_Images: 2 images linked, 0 copied\n"));
   EXPECT_EQ(err_.str(), "");
@@ -69,7 +62,7 @@ TEST_F(Euroc2RawlogTest, WritesARawlogAndSaysWhat) {
 TEST_F(Euroc2RawlogTest, QuietSaysNothing) {
   EXPECT_EQ(run({"-q", "-i", in() + "/mav0", "-o", rawlog(), "-z", "0", "--cameras", "cam0", "--copy"}), 0);
   EXPECT_EQ(out_.str() + err_.str(), "");
-  EXPECT_EQ(fs::hard_link_count(folder_ / "out_Images" / "cam0_b.png"), 1u);
+  EXPECT_EQ(fs::hard_link_count(folder_ / "out_Images/cam0_b.png"), 1u);
 }
 
 TEST_F(Euroc2RawlogTest, OverwritesOnlyWhenAsked) {

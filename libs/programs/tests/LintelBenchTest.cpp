@@ -42,10 +42,7 @@ constexpr const char* kSim =
     "mkdir -p \"$2/mav0/state_groundtruth_estimate0\"\n"
     "printf '#t\\n0,0,0,0,1,0,0,0\\n' > \"$2/mav0/state_groundtruth_estimate0/data.csv\"\n";
 
-std::string bytesOf(const fs::path& path) {
-  std::ifstream file(path, std::ios::binary);
-  return {std::istreambuf_iterator<char>(file), {}};
-}
+using test::bytesOf;
 
 class LintelBenchProgram : public ::testing::Test {
  protected:

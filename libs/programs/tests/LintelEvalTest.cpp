@@ -3,7 +3,6 @@
 
 #include <gmock/gmock.h>
 
-#include <filesystem>
 #include <fstream>
 #include <nlohmann/json.hpp>
 #include <sstream>
@@ -12,22 +11,16 @@
 
 #include "lintel/geometry/Rotation.h"
 #include "lintel/mapping/MapFile.h"
+#include "lintel/testing/TempFolder.h"
 
 namespace lintel {
 namespace {
 
-namespace fs = std::filesystem;
 using ::testing::HasSubstr;
 using ::testing::StartsWith;
 
 class LintelEvalProgram : public ::testing::Test {
  protected:
-  LintelEvalProgram() {
-    fs::remove_all(folder_);
-    fs::create_directories(folder_);
-  }
-  ~LintelEvalProgram() override { fs::remove_all(folder_); }
-
   int run(const std::vector<std::string>& arguments) {
     std::vector<const char*> argv = {"lintel-eval"};
     for (const std::string& argument : arguments) argv.push_back(argument.c_str());
@@ -35,12 +28,8 @@ class LintelEvalProgram : public ::testing::Test {
     err_.str("");
     return runLintelEval(static_cast<int>(argv.size()), argv.data(), out_, err_);
   }
-  std::string write(const std::string& name, const std::string& text) const {
-    fs::create_directories((folder_ / name).parent_path());
-    std::ofstream(folder_ / name) << text;
-    return path(name);
-  }
-  std::string path(const std::string& name) const { return (folder_ / name).string(); }
+  std::string write(const std::string& name, const std::string& text) const { return folder_.write(name, text); }
+  std::string path(const std::string& name) const { return folder_ / name; }
   static nlohmann::json read(const std::string& file) { return nlohmann::json::parse(std::ifstream(file)); }
 
   /// A true flight of 4 s and a map in a frame of its own: turned by 90 degrees, the second line 3 cm off.
@@ -65,9 +54,7 @@ class LintelEvalProgram : public ::testing::Test {
     writeMap(map, path("map.lintel"));
   }
 
-  const fs::path folder_ =
-      fs::path(::testing::TempDir()) /
-      (std::string("lintel_eval_") + ::testing::UnitTest::GetInstance()->current_test_info()->name());
+  const test::TempFolder folder_;
   std::ostringstream out_, err_;
 };
 

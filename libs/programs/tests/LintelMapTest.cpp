@@ -4,7 +4,6 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <sys/resource.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <cmath>
@@ -14,6 +13,7 @@
 #include <vector>
 
 #include "lintel/mapping/MapFile.h"
+#include "lintel/testing/TempFolder.h"
 
 namespace lintel {
 namespace {
@@ -23,10 +23,6 @@ using ::testing::HasSubstr;
 class LintelMapTest : public ::testing::Test {
  protected:
   void SetUp() override {
-    const auto* test = ::testing::UnitTest::GetInstance()->current_test_info();
-    folder_ = std::filesystem::temp_directory_path() /
-              ("lintel_map_" + std::string(test->name()) + std::to_string(::getpid()));
-    std::filesystem::create_directories(folder_);
     LineMap map;
     for (std::uint64_t i = 0; i < 3; ++i) {
       MapLine line;
@@ -37,9 +33,8 @@ class LintelMapTest : public ::testing::Test {
     }
     writeMap(map, in("map.lintel"));
   }
-  void TearDown() override { std::filesystem::remove_all(folder_); }
 
-  std::string in(const std::string& name) const { return (folder_ / name).string(); }
+  std::string in(const std::string& name) const { return folder_ / name; }
   bool exists(const std::string& name) const { return std::filesystem::exists(in(name)); }
 
   int run(std::vector<std::string> arguments) {
@@ -49,7 +44,7 @@ class LintelMapTest : public ::testing::Test {
     return runLintelMap(static_cast<int>(argv.size()), argv.data(), out_, err_);
   }
 
-  std::filesystem::path folder_;
+  test::TempFolder folder_;
   std::ostringstream out_, err_;
 };
 
@@ -102,7 +97,7 @@ TEST_F(LintelMapTest, ALimitOfFileSizeIsAnErrorAndLeavesNothing) {
   setrlimit(RLIMIT_FSIZE, &before);
   EXPECT_EQ(exit_code, 1);
   EXPECT_THAT(err_.str(), HasSubstr("map.glb"));
-  EXPECT_EQ(std::distance(std::filesystem::directory_iterator(folder_), std::filesystem::directory_iterator()), 1);
+  EXPECT_EQ(folder_.entries(), 1);
 }
 
 TEST_F(LintelMapTest, HelpHasExamples) {

@@ -2,12 +2,13 @@
 #include "lintel/programs/LintelSim.h"
 
 #include <gtest/gtest.h>
-#include <unistd.h>
 
 #include <filesystem>
 #include <fstream>
 #include <sstream>
 #include <vector>
+
+#include "lintel/testing/TempFolder.h"
 
 namespace lintel {
 namespace {
@@ -16,12 +17,6 @@ namespace fs = std::filesystem;
 
 class LintelSimTest : public testing::Test {
  protected:
-  void SetUp() override {
-    root_ = fs::temp_directory_path() / ("lintel_sim_" + std::to_string(::getpid()));
-    fs::create_directories(root_);
-  }
-  void TearDown() override { fs::remove_all(root_); }
-
   int run(std::vector<std::string> arguments) {
     std::vector<const char*> argv{"lintel-sim"};
     for (const std::string& a : arguments) argv.push_back(a.c_str());
@@ -29,9 +24,9 @@ class LintelSimTest : public testing::Test {
     err_.str("");
     return runLintelSim(static_cast<int>(argv.size()), argv.data(), out_, err_);
   }
-  std::string folder() const { return (root_ / "recording").string(); }
+  std::string folder() const { return folder_ / "recording"; }
 
-  fs::path root_;
+  test::TempFolder folder_;
   std::ostringstream out_, err_;
 };
 
@@ -65,7 +60,7 @@ TEST_F(LintelSimTest, WrongCommandLinesAreUsageErrors) {
 }
 
 TEST_F(LintelSimTest, AMissingTrajectoryIsNamed) {
-  EXPECT_EQ(run({"-o", folder(), "--trajectory", (root_ / "nothing.tum").string()}), 1);
+  EXPECT_EQ(run({"-o", folder(), "--trajectory", folder_ / "nothing.tum"}), 1);
   EXPECT_NE(err_.str().find("nothing.tum"), std::string::npos);
   EXPECT_FALSE(fs::exists(folder() + ".part"));
 }

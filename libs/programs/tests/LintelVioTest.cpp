@@ -29,7 +29,7 @@ class LintelVioTest : public testing::Test {
  protected:
   /// The recording, and the run on it that the others are compared with.
   static void SetUpTestSuite() {
-    work_ = std::make_unique<WorkFolder>();
+    work_ = std::make_unique<TempFolder>();
     SimulationParams params;
     params.duration_s = kDuration_s;
     params.threads = 2;
@@ -81,7 +81,7 @@ class LintelVioTest : public testing::Test {
     EXPECT_NE(statistics["ended_early"], "");
   }
 
-  static inline std::unique_ptr<WorkFolder> work_;
+  static inline std::unique_ptr<TempFolder> work_;
   static inline ProgramRun reference_;
 };
 

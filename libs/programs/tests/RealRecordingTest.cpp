@@ -19,7 +19,7 @@ TEST(RealRecording, TrajectoryAndMapOfAHandheldStart) {
   const char* folder = std::getenv("LINTEL_TEST_DATA");
   const std::string input = std::string(folder ? folder : LINTEL_SOURCE_DIR "/../shared/data") + "/MH_01_easy_16s";
   if (!std::filesystem::exists(input)) GTEST_SKIP() << input << " is absent; set LINTEL_TEST_DATA";
-  const WorkFolder work;
+  const TempFolder work;
   const std::string out = work / "out";
   const ProgramRun run = runVio({input, "-o", out, "-c", eurocConfig(), "--export", "none", "--quiet"});
   ASSERT_EQ(run.exit_code, 0) << run.err;

@@ -1,10 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "VioTestRuns.h"
 
-#include <unistd.h>
-
-#include <fstream>
-#include <iterator>
 #include <sstream>
 
 #include "lintel/programs/Euroc2Rawlog.h"
@@ -38,20 +34,5 @@ ProgramRun runConverter(const std::vector<std::string>& arguments) {
 }
 
 std::string eurocConfig() { return LINTEL_SOURCE_DIR "/share/lintel/config/euroc.yaml"; }
-
-std::string bytesOf(const std::filesystem::path& path) {
-  std::ifstream file(path, std::ios::binary);
-  return {std::istreambuf_iterator<char>(file), {}};
-}
-
-WorkFolder::WorkFolder() {
-  std::string pattern = (std::filesystem::temp_directory_path() / "lintel_vio_XXXXXX").string();
-  path_ = mkdtemp(pattern.data());
-}
-
-WorkFolder::~WorkFolder() {
-  std::error_code ignored;
-  std::filesystem::remove_all(path_, ignored);
-}
 
 }  // namespace lintel::test

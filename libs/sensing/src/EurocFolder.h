@@ -4,7 +4,7 @@
 #include <optional>
 #include <string>
 
-#include "CsvReader.h"
+#include "EurocTable.h"
 #include "SampleGate.h"
 #include "lintel/core/Frame.h"
 
@@ -29,7 +29,7 @@ class EurocImageList {
 
  private:
   std::string folder_;
-  CsvReader csv_;
+  EurocTable csv_;
   StampGate gate_{"image", Fault::ImageStamp};
 };
 
@@ -41,7 +41,7 @@ class EurocImuList {
   std::optional<ImuSample> next(const WarningSink& warn);
 
  private:
-  CsvReader csv_;
+  EurocTable csv_;
   ImuGate gate_;
 };
 

@@ -163,7 +163,7 @@ class GroundtruthSource final : public RawlogSource {
   }
 
  private:
-  CsvReader csv_;
+  EurocTable csv_;
   StampGate gate_{"true pose", Fault::Other};
   Pose pose_;
   std::int64_t t_ns_ = 0;

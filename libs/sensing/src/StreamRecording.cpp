@@ -6,16 +6,13 @@ namespace lintel {
 StreamRecording::StreamRecording(std::unique_ptr<SensorStream> stream, const RecordingParams& params)
     : rig_(stream->rig()),
       expected_frames_(stream->countFrames(params)),
-      capacity_(params.frames_ahead),
+      runs_ahead_(params.frames_ahead > 0),
       log_(stream->openingWarnings()),
-      producer_(std::move(stream), params) {}
+      producer_(std::move(stream), params),
+      queue_(params.frames_ahead) {}
 
 StreamRecording::~StreamRecording() {
-  {
-    const std::lock_guard<std::mutex> lock(mutex_);
-    stop_ = true;
-  }
-  changed_.notify_all();
+  queue_.close();
   if (thread_.joinable()) thread_.join();
 }
 
@@ -33,23 +30,14 @@ void StreamRecording::runAhead() {
   for (bool last = false; !last;) {
     ItemPtr item = produce();
     last = item->last();
-    std::unique_lock<std::mutex> lock(mutex_);
-    changed_.wait(lock, [this] { return stop_ || queue_.size() < capacity_; });
-    if (stop_) return;
-    queue_.push_back(std::move(item));
-    changed_.notify_all();
+    if (!queue_.push(std::move(item))) return;
   }
 }
 
 StreamRecording::ItemPtr StreamRecording::take() {
-  if (capacity_ == 0) return produce();
+  if (!runs_ahead_) return produce();
   if (!thread_.joinable()) thread_ = std::thread([this] { runAhead(); });
-  std::unique_lock<std::mutex> lock(mutex_);
-  changed_.wait(lock, [this] { return !queue_.empty(); });
-  ItemPtr item = std::move(queue_.front());
-  queue_.pop_front();
-  changed_.notify_all();
-  return item;
+  return std::move(*queue_.pop());  // never closed while somebody takes
 }
 
 std::optional<FrameWithImu> StreamRecording::next() {

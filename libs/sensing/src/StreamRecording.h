@@ -1,14 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <condition_variable>
-#include <deque>
 #include <exception>
 #include <memory>
-#include <mutex>
 #include <thread>
 
 #include "StepProducer.h"
+#include "lintel/core/BoundedQueue.h"
 
 namespace lintel {
 
@@ -36,16 +34,14 @@ class StreamRecording final : public Recording {
   void runAhead();
 
   Rig rig_;
-  std::size_t expected_frames_, capacity_;
+  std::size_t expected_frames_;
+  bool runs_ahead_;
   WarningLog log_;
   StepProducer producer_;
   bool finished_ = false;
 
+  BoundedQueue<ItemPtr> queue_;
   std::thread thread_;
-  std::mutex mutex_;
-  std::condition_variable changed_;
-  std::deque<ItemPtr> queue_;
-  bool stop_ = false;
 };
 
 }  // namespace lintel

@@ -19,7 +19,7 @@ class EurocFaultsTest : public testing::Test {
   }
   /// The line of imu0/data.csv that begins at or after a part of the file's length.
   std::string imuLine(double part) const {
-    const std::string text = readText(imu_ + "/data.csv");
+    const std::string text = bytesOf(imu_ + "/data.csv");
     const std::size_t begin = text.find('\n', static_cast<std::size_t>(part * static_cast<double>(text.size()))) + 1;
     return text.substr(begin, text.find('\n', begin) + 1 - begin);
   }
@@ -35,7 +35,7 @@ TEST_F(EurocFaultsTest, MissingParts) {
   EXPECT_THAT(openingError(root_), HasSubstr("imu0/sensor.yaml: missing"));
   TinyEuroc().write(root_);
   std::filesystem::remove(camera_ + "/data.csv");
-  EXPECT_THAT(openingError(root_), HasSubstr("cam0/data.csv: cannot be read"));
+  EXPECT_THAT(openingError(root_), HasSubstr("cam0/data.csv: cannot be opened"));
   std::filesystem::remove_all(imu_);
   EXPECT_THAT(openingError(root_), HasSubstr("imu0/sensor.yaml: missing"));
 }
@@ -125,14 +125,14 @@ TEST_F(EurocFaultsTest, MalformedLinesAreNamed) {
 
 TEST_F(EurocFaultsTest, ACutLastLineIsSkipped) {
   for (const std::string& file : {camera_ + "/data.csv", imu_ + "/data.csv"}) {
-    const std::string text = readText(file);
+    const std::string text = bytesOf(file);
     writeText(file, text + "1403636599");
     const Everything all = readAll(root_);
     EXPECT_EQ(all.error, "");
     EXPECT_EQ(all.steps.size(), 20u);
     writeText(file, text);
   }
-  std::string text = readText(camera_ + "/data.csv");
+  std::string text = bytesOf(camera_ + "/data.csv");
   writeText(camera_ + "/data.csv", text.substr(0, text.size() - 30));
   EXPECT_THAT(readAll(root_).warnings, ElementsAre(AllOf(HasSubstr("data.csv:21"), HasSubstr("last line incomplete"))));
 }
@@ -160,7 +160,7 @@ TEST_F(EurocFaultsTest, NonFiniteSamplesAreSkipped) {
 }
 
 TEST_F(EurocFaultsTest, ADropOutLeavesBatchesEmpty) {
-  const std::string text = readText(imu_ + "/data.csv"), from = imuLine(0.5), to = imuLine(0.7);
+  const std::string text = bytesOf(imu_ + "/data.csv"), from = imuLine(0.5), to = imuLine(0.7);
   const std::size_t begin = text.find(from);
   writeText(imu_ + "/data.csv", text.substr(0, begin) + text.substr(text.find(to)));
   const Everything all = readAll(root_);

@@ -92,7 +92,7 @@ TEST_F(EurocToRawlogTest, ExternalImagesStandWhereMrptLooks) {
     if (const auto image = std::dynamic_pointer_cast<mrpt::obs::CObservationImage>(observation)) {
       const std::string file = out_ + "/flight_Images/" + image->image.getExternalStorageFile();
       const std::string name = fs::path(file).filename().string();
-      EXPECT_EQ(readText(file), readText(root_ + "/mav0/" + name.substr(0, 4) + "/data/" + name.substr(5)));
+      EXPECT_EQ(bytesOf(file), bytesOf(root_ + "/mav0/" + name.substr(0, 4) + "/data/" + name.substr(5)));
     }
 }
 
@@ -122,16 +122,16 @@ TEST_F(EurocToRawlogTest, TheSameInputGivesTheSameBytes) {
   for (const bool embed : {false, true}) {
     params.embed = embed;
     eurocToRawlog(root_, rawlog_, params);
-    const std::string first = readText(rawlog_);
+    const std::string first = bytesOf(rawlog_);
     eurocToRawlog(root_, rawlog_, params);
-    EXPECT_EQ(readText(rawlog_), first);
+    EXPECT_EQ(bytesOf(rawlog_), first);
   }
 }
 
 TEST_F(EurocToRawlogTest, NothingIsOverwrittenUnasked) {
   writeText(rawlog_, "mine");
   EXPECT_THAT(error(), HasSubstr("exists already"));
-  EXPECT_EQ(readText(rawlog_), "mine");
+  EXPECT_EQ(bytesOf(rawlog_), "mine");
   EurocToRawlogParams params;
   params.overwrite = true;
   EXPECT_EQ(error(params), "");
@@ -145,19 +145,19 @@ TEST_F(EurocToRawlogTest, AFolderOfSomebodyElseIsNeverReplaced) {
   EurocToRawlogParams params;
   params.overwrite = true;
   EXPECT_THAT(error(params), HasSubstr("exists already, without its rawlog"));
-  EXPECT_EQ(readText(out_ + "/flight_Images/holiday.png"), "mine");
+  EXPECT_EQ(bytesOf(out_ + "/flight_Images/holiday.png"), "mine");
 }
 
 TEST_F(EurocToRawlogTest, FailuresLeaveNothingAndKeepTheOld) {
   eurocToRawlog(root_, rawlog_);
-  const std::string old = readText(rawlog_);
-  std::string text = readText(root_ + "/mav0/imu0/data.csv");
+  const std::string old = bytesOf(rawlog_);
+  std::string text = bytesOf(root_ + "/mav0/imu0/data.csv");
   writeText(root_ + "/mav0/imu0/data.csv", text.insert(text.size() / 2, "\nx,y\n"));
   EurocToRawlogParams params;
   params.overwrite = true;
   EXPECT_THAT(error(params), HasSubstr("imu0/data.csv:"));
   EXPECT_THAT(written(), ElementsAre("flight.rawlog", "flight_Images"));
-  EXPECT_EQ(readText(rawlog_), old);
+  EXPECT_EQ(bytesOf(rawlog_), old);
   EXPECT_EQ(readAll(rawlog_).steps.size(), 20u);
 }
 

@@ -80,7 +80,7 @@ TEST_F(RawlogRecordingTest, RangesGiveTheSameAsTheFolder) {
 }
 
 TEST_F(RawlogRecordingTest, FaultyFoldersGiveTheSameAsTheirRawlog) {
-  const std::string imu = root_ + "/mav0/imu0/data.csv", text = readText(imu);
+  const std::string imu = root_ + "/mav0/imu0/data.csv", text = bytesOf(imu);
   // A drop-out, a sample twice, one not finite.
   const std::size_t a = text.find('\n', text.size() / 3) + 1, b = text.find('\n', text.size() / 2) + 1;
   const std::string twice = text.substr(b, text.find('\n', b) + 1 - b);
@@ -229,7 +229,7 @@ TEST_F(RawlogRecordingTest, ACutFileGivesWhatIsBeforeTheCut) {
   const std::vector<FrameWithImu> whole = readAll(root_).steps;
   for (const int level : {0, 5}) {
     convert(true, level);
-    const std::string bytes = readText(rawlog_);
+    const std::string bytes = bytesOf(rawlog_);
     for (const double part : {0.6, 0.8, 0.93, 0.99}) {
       writeText(rawlog_, bytes.substr(0, static_cast<std::size_t>(part * static_cast<double>(bytes.size()))));
       const Everything all = readAll(rawlog_);
@@ -256,7 +256,7 @@ TEST_F(RawlogRecordingTest, ReadsNoFurtherAheadThanASecondInADropOut) {
                        observations.end());
   });
   // Damaged at the end: who reads on in search of IMU samples meets the damage before frame 31 is delivered.
-  const std::string bytes = readText(rawlog_);
+  const std::string bytes = bytesOf(rawlog_);
   writeText(rawlog_, bytes.substr(0, bytes.size() - 10));
   const Everything all = readAll(rawlog_);
   EXPECT_GE(all.steps.size(), 75u);

@@ -2,7 +2,6 @@
 #include "TinyEuroc.h"
 
 #include <gtest/gtest.h>
-#include <unistd.h>
 
 #include <fstream>
 #include <iomanip>
@@ -12,16 +11,6 @@
 namespace lintel::test {
 
 namespace fs = std::filesystem;
-
-TempFolder::TempFolder() {
-  std::string pattern = (fs::temp_directory_path() / "lintel_sensing_XXXXXX").string();
-  path_ = mkdtemp(pattern.data());
-}
-
-TempFolder::~TempFolder() {
-  std::error_code ignored;
-  fs::remove_all(path_, ignored);
-}
 
 namespace {
 
@@ -108,19 +97,12 @@ Eigen::Vector3d TinyEuroc::accelAt(std::int64_t t_ns) {
   return {9.1 - 0.5 * s, 0.2 * s, -4.3 + s};
 }
 
-std::string readText(const std::string& path) {
-  std::ifstream file(path, std::ios::binary);
-  std::ostringstream text;
-  text << file.rdbuf();
-  return text.str();
-}
-
 void writeText(const std::string& path, const std::string& text) {
   std::ofstream(path, std::ios::binary | std::ios::trunc) << text;
 }
 
 void replaceInFile(const std::string& path, const std::string& from, const std::string& to) {
-  std::string text = readText(path);
+  std::string text = bytesOf(path);
   const std::size_t place = text.find(from);
   ASSERT_NE(place, std::string::npos) << from << " is not in " << path;
   writeText(path, text.replace(place, from.size(), to));

@@ -8,22 +8,9 @@
 #include <vector>
 
 #include "lintel/sensing/Recording.h"
+#include "lintel/testing/TempFolder.h"
 
 namespace lintel::test {
-
-/// A folder of its own below the system's temporary folder, removed at the end.
-class TempFolder {
- public:
-  TempFolder();
-  ~TempFolder();
-  TempFolder(const TempFolder&) = delete;
-  TempFolder& operator=(const TempFolder&) = delete;
-  std::string operator/(const std::string& name) const { return (path_ / name).string(); }
-  const std::filesystem::path& path() const { return path_; }
-
- private:
-  std::filesystem::path path_;
-};
 
 /// A small EuRoC recording: 20 Hz images of 32x24 pixels, each different, 200 Hz IMU whose signals are linear in time,
 /// ground truth, a rotated camera. Neither kind of stamp is a multiple of 100 ns, and IMU and images do not coincide.
@@ -45,7 +32,6 @@ struct TinyEuroc {
   static Eigen::Vector3d accelAt(std::int64_t t_ns);
 };
 
-std::string readText(const std::string& path);
 void writeText(const std::string& path, const std::string& text);
 /// Replaces the first `from`, which must be there.
 void replaceInFile(const std::string& path, const std::string& from, const std::string& to);

@@ -2,11 +2,11 @@
 // A written recording held against itself by nothing of ours: files are read line by line, lines are projected and
 // edges found by OpenCV, the IMU is integrated in the plainest way.
 #include <gtest/gtest.h>
-#include <unistd.h>
 
 #include <Eigen/Dense>
 #include <filesystem>
 #include <fstream>
+#include <memory>
 #include <opencv2/calib3d.hpp>
 #include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
@@ -14,6 +14,7 @@
 #include <sstream>
 
 #include "lintel/simulation/Simulation.h"
+#include "lintel/testing/TempFolder.h"
 
 namespace lintel {
 namespace {
@@ -50,15 +51,15 @@ Row listOf(const fs::path& path, const std::string& key) {
 class RecordingFiles : public testing::Test {
  protected:
   static void SetUpTestSuite() {
-    mav0_ = fs::temp_directory_path() / ("lintel_files_" + std::to_string(::getpid()));
+    folder_ = std::make_unique<test::TempFolder>();
     SimulationParams params;
     params.duration_s = 1;
     params.imu.noise = params.imu.biases = false;
     params.threads = 2;
-    Simulation(params).write(mav0_.string());
-    mav0_ /= "mav0";
+    Simulation(params).write(folder_->path().string());
+    mav0_ = folder_->path() / "mav0";
   }
-  static void TearDownTestSuite() { fs::remove_all(mav0_.parent_path()); }
+  static void TearDownTestSuite() { folder_.reset(); }
 
   static Eigen::Matrix4d truthAt(std::int64_t t_ns) {
     std::ifstream file(mav0_ / "state_groundtruth_estimate0/data.csv");
@@ -74,6 +75,7 @@ class RecordingFiles : public testing::Test {
     }
     throw std::runtime_error("no true pose");
   }
+  static inline std::unique_ptr<test::TempFolder> folder_;
   static inline fs::path mav0_;
 };
 

@@ -3,8 +3,6 @@
 
 #include <gtest/gtest.h>
 
-#include <unistd.h>
-
 #include <filesystem>
 #include <fstream>
 #include <sstream>
@@ -13,6 +11,7 @@
 #include "lintel/sensing/Recording.h"
 #include "lintel/simulation/EurocRig.h"
 #include "lintel/simulation/SegmentView.h"
+#include "lintel/testing/TempFolder.h"
 
 namespace lintel {
 namespace {
@@ -21,34 +20,19 @@ namespace fs = std::filesystem;
 
 class SimulationTest : public testing::Test {
  protected:
-  void SetUp() override {
-    root_ = fs::temp_directory_path() /
-            ("lintel_simulation_" + std::to_string(testing::UnitTest::GetInstance()->random_seed()) +
-             testing::UnitTest::GetInstance()->current_test_info()->name() + std::to_string(::getpid()));
-    fs::create_directories(root_);
-  }
-  void TearDown() override { fs::remove_all(root_); }
-
   static SimulationParams quick() {
     SimulationParams params;
     params.duration_s = 0.2;
     return params;
   }
   std::string write(const std::string& name, const SimulationParams& params) const {
-    const std::string folder = (root_ / name).string();
+    const std::string folder = folder_ / name;
     Simulation(params).write(folder);
     return folder;
   }
 
-  fs::path root_;
+  test::TempFolder folder_;
 };
-
-std::string contentOf(const fs::path& path) {
-  std::ifstream file(path, std::ios::binary);
-  std::ostringstream text;
-  text << file.rdbuf();
-  return text.str();
-}
 
 TEST_F(SimulationTest, ThreadsAndRepetitionsGiveTheSameBytes) {
   SimulationParams params = quick();
@@ -59,12 +43,12 @@ TEST_F(SimulationTest, ThreadsAndRepetitionsGiveTheSameBytes) {
   for (const auto& entry : fs::recursive_directory_iterator(one)) {
     if (!entry.is_regular_file()) continue;
     ++files;
-    EXPECT_TRUE(contentOf(entry.path()) == contentOf(two / fs::relative(entry.path(), one))) << entry.path();
+    EXPECT_TRUE(test::bytesOf(entry.path()) == test::bytesOf(two / fs::relative(entry.path(), one))) << entry.path();
   }
   EXPECT_EQ(files, 4 + 1 + 1 + 1 + 1 + 1 + 4);  // yaml, image list, IMU, truth, lines, surfaces, images
   params.seed = 2;
   const fs::path other = write("other", params);
-  EXPECT_NE(contentOf(one / "mav0/imu0/data.csv"), contentOf(other / "mav0/imu0/data.csv"));
+  EXPECT_NE(test::bytesOf(one / "mav0/imu0/data.csv"), test::bytesOf(other / "mav0/imu0/data.csv"));
 }
 
 TEST_F(SimulationTest, TheFolderReadsBackAsARecording) {
@@ -87,7 +71,7 @@ TEST_F(SimulationTest, TheFolderReadsBackAsARecording) {
 
 TEST_F(SimulationTest, GroundTruthIsTheTrajectory) {
   const Simulation simulation(quick());
-  const std::string folder = (root_ / "truth").string();
+  const std::string folder = folder_ / "truth";
   simulation.write(folder);
   const StampedPoses poses = readTrajectory(folder + "/mav0/state_groundtruth_estimate0/data.csv");
   ASSERT_EQ(poses.size(), 81u);
@@ -155,7 +139,7 @@ TEST_F(SimulationTest, ImpossibleRequestsAreRefused) {
   params.motion.figure = "waltz";
   EXPECT_THROW(Simulation{params}, std::invalid_argument);
   params = quick();
-  params.motion.trajectory_file = (root_ / "nothing.tum").string();
+  params.motion.trajectory_file = folder_ / "nothing.tum";
   EXPECT_THROW(Simulation{params}, EvaluationError);
 }
 

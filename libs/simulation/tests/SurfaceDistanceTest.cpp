@@ -2,26 +2,21 @@
 #include "lintel/simulation/SurfaceDistance.h"
 
 #include <gtest/gtest.h>
-#include <unistd.h>
 
 #include <cmath>
-#include <filesystem>
-#include <fstream>
 #include <stdexcept>
 #include <string>
+
+#include "lintel/testing/TempFolder.h"
 
 namespace lintel {
 namespace {
 
 class SurfaceDistanceTest : public testing::Test {
  protected:
-  ~SurfaceDistanceTest() override { std::filesystem::remove(file_); }
-  std::string write(const std::string& text) const {
-    std::ofstream(file_) << text;
-    return file_;
-  }
-  const std::string file_ =
-      std::filesystem::temp_directory_path() / ("lintel_surface_" + std::to_string(::getpid()) + ".ply");
+  std::string write(const std::string& text) const { return folder_.write("surface.ply", text); }
+
+  test::TempFolder folder_;
 };
 
 constexpr const char* kSquareAndTriangle =

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "EdgeAppearance.h"
+#include "lintel/core/Quantiles.h"
 
 namespace lintel {
 namespace {
@@ -63,9 +64,7 @@ float usualGradient(const std::vector<Sample>& samples) {
   for (const Sample& sample : samples)
     if (sample.candidates > 0) gradients.push_back(sample.gradient[0]);
   if (gradients.empty()) return 0;
-  const auto middle = gradients.begin() + static_cast<std::ptrdiff_t>(gradients.size() / 2);
-  std::nth_element(gradients.begin(), middle, gradients.end());
-  return *middle;
+  return upperMedian(gradients);
 }
 
 /// Takes away candidates much weaker than the line's own edge.

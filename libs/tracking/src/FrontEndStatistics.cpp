@@ -5,6 +5,8 @@
 #include <cmath>
 #include <numeric>
 
+#include "lintel/core/Quantiles.h"
+
 namespace lintel {
 
 double StageTimes::sum() const { return std::accumulate(ms.begin(), ms.end(), 0.0); }
@@ -13,10 +15,8 @@ double StageTimes::mean() const { return ms.empty() ? 0.0 : sum() / static_cast<
 
 double StageTimes::quantile(double q) const {
   if (ms.empty()) return 0;
-  std::vector<float> sorted = ms;
-  const auto rank = static_cast<std::ptrdiff_t>(std::clamp(q, 0.0, 1.0) * static_cast<double>(sorted.size() - 1));
-  std::nth_element(sorted.begin(), sorted.begin() + rank, sorted.end());
-  return sorted[static_cast<std::size_t>(rank)];
+  std::vector<float> values = ms;
+  return lowerQuantile(values, std::clamp(q, 0.0, 1.0));
 }
 
 std::int64_t TrackLifetimes::count() const {

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "PatchFlow.h"
+#include "lintel/core/Quantiles.h"
 
 namespace lintel {
 namespace {
@@ -22,12 +23,6 @@ constexpr double kSpacing_px = 15;       ///< between samples, when the line is 
 constexpr double kNear_px = 20;          ///< points nearer than this have the same weight
 constexpr double kMaxDeviation_px = 40;  ///< flow further than this from the guess is an error
 
-double median(std::vector<double> values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
-
 Eigen::Vector2d toEigen(const cv::Point2f& p) { return {p.x, p.y}; }
 
 /// Lays the guessed ends on the fitted line, moved along it by what the samples moved. A patch on a plain edge slides
@@ -39,7 +34,7 @@ ImageLine carryEnds(const ImageLine& guess, const RobustLine& fit, const std::ve
   std::vector<double> along;
   for (std::size_t i = 0; i < found.size(); ++i)
     if (fit.inlier[i]) along.push_back(d.dot(found[i] - guessed[i]));
-  const double shift = median(along);
+  const double shift = upperMedian(along);
   const auto lay = [&](const Eigen::Vector2d& end) -> Eigen::Vector2d {
     return fit.line.start + d * (d.dot(end - fit.line.start) + shift);
   };
@@ -159,7 +154,7 @@ double LineFlow::typicalDeviation(const std::vector<CarriedLine>& lines, const s
       deviations.push_back(followed[i].by_flow
                                ? normalMotion(followed[i].expected, followed[i].line).cwiseAbs().maxCoeff()
                                : followed[i].limit_px);
-  return deviations.empty() ? 0.0 : median(std::move(deviations));
+  return deviations.empty() ? 0.0 : upperMedian(deviations);
 }
 
 std::vector<std::optional<PredictedLine>> LineFlow::predict(const std::vector<CarriedLine>& lines,

@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "lintel/core/Quantiles.h"
+
 namespace lintel {
 namespace {
 
@@ -12,12 +14,6 @@ constexpr double kStill_px = 0.3;      ///< median motion below this noise has n
 constexpr std::size_t kMinPoints = 5;  ///< with a known depth, to carry the unit on: a median of fewer is not robust
 constexpr double kDrift = 0.03;        ///< relative growth of a depth's uncertainty per step: the length's error
 constexpr double kGate = 4;            ///< standard deviations; a measurement beyond is not used
-
-double median(std::vector<double> values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
 
 }  // namespace
 
@@ -91,7 +87,7 @@ void StepTranslation::updatePoints(const std::vector<Ray>& rays, const Eigen::Ve
     depths.push_back(depth->w);
   }
   points_ = std::move(points);
-  typical_ = depths.empty() ? 0 : median(std::move(depths));
+  typical_ = depths.empty() ? 0 : upperMedian(depths);
 }
 
 void StepTranslation::update(const std::vector<Pair>& pairs, const Eigen::Quaterniond& R_c1_c0,
@@ -106,7 +102,7 @@ void StepTranslation::update(const std::vector<Pair>& pairs, const Eigen::Quater
     t_c1_.setZero();
     return;
   }
-  if (median(moved) * focal_px_ < kStill_px) {
+  if (upperMedian(moved) * focal_px_ < kStill_px) {
     t_c1_.setZero();
     updatePoints(rays, *direction_c1, 0);
     return;

@@ -3,10 +3,10 @@
 
 #include <gtest/gtest.h>
 
-#include <filesystem>
 #include <opencv2/imgcodecs.hpp>
 
 #include "TestImages.h"
+#include "lintel/testing/TempFolder.h"
 
 namespace lintel {
 namespace {
@@ -29,10 +29,10 @@ TEST(TrackDrawing, drawsPointsAndLinesInColour) {
   line.end_px = rig.camera.toPixel(line.end);
   tracks.lines.push_back(line);
 
-  const std::string path = (std::filesystem::path(::testing::TempDir()) / "lintel_track_drawing.png").string();
+  const test::TempFolder folder;
+  const std::string path = folder / "tracks.png";
   drawTracks(path, frame, rig, tracks);
   const cv::Mat drawn = cv::imread(path);
-  std::filesystem::remove(path);
   ASSERT_EQ(drawn.cols, 2 * rig.camera.width);
   const auto coloured = [&](const Eigen::Vector2d& px) {
     const cv::Vec3b c = drawn.at<cv::Vec3b>(static_cast<int>(2 * px.y()), static_cast<int>(2 * px.x()));

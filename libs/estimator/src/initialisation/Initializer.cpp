@@ -11,6 +11,7 @@
 #include "initialisation/GravityAlignment.h"
 #include "initialisation/GyroAlignment.h"
 #include "landmarks/PointTriangulation.h"
+#include "lintel/core/Quantiles.h"
 #include "lintel/geometry/Frames.h"
 #include "lintel/geometry/Rotation.h"
 #include "solver/Marginalizer.h"
@@ -20,12 +21,6 @@
 namespace lintel {
 
 namespace {
-
-double median(std::vector<double>& values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
 
 /// Mean and standard deviation (norm over the axes) of the buffer's IMU.
 struct ImuStatistics {
@@ -74,7 +69,7 @@ double medianDisparityPx(const SlidingWindow& window, std::size_t frame_a, std::
     if (turned.z() < 0.1) continue;
     disparities.push_back((turned.head<2>() / turned.z() - in_a->observation.position).norm());
   }
-  return disparities.size() < 10 ? -1 : median(disparities) * window.camera().meanFocal();
+  return disparities.size() < 10 ? -1 : upperMedian(disparities) * window.camera().meanFocal();
 }
 
 bool Initializer::atRest(const SlidingWindow& window) const {
@@ -178,7 +173,7 @@ std::string Initializer::verify(SlidingWindow& window) const {
   }
   if (errors.size() < 20 || static_cast<double>(errors.size()) < 0.6 * candidates)
     return "too few points agree with the motion";
-  if (median(errors) > p.max_error_px) return "the images do not agree with the motion";
+  if (upperMedian(errors) > p.max_error_px) return "the images do not agree with the motion";
   if (biasOf(window.frames.back().motion.data()).accel.norm() > p.max_bias_accel)
     return "the accelerometer bias of the start is implausible";
   if (!(relativeScaleSigma(window) < p.max_scale_sigma)) return "waiting for a motion that shows the scale";

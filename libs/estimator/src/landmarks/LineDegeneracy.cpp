@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "landmarks/LineDegeneracy.h"
 
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
+
+#include "lintel/geometry/SmallLeastSquares.h"
 
 namespace lintel {
 
@@ -14,15 +15,9 @@ LineUncertainty uncertaintyOf(const OrthonormalLine& line, const Eigen::Matrix4d
   Eigen::Matrix<double, 2, 4> direction, position;
   direction << 0, 0, -1, 0, 1, 0, 0, 0;
   position << 0, -r, -along_m, 0, along_m, 0, 0, 1 / (sine * sine);
-  // a floor instead of an inverse that fails: 1e-6 of information is a sigma of 1000 rad
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix4d> solver(information);
-  const Eigen::Vector4d variance = solver.eigenvalues().cwiseMax(1e-6).cwiseInverse();
-  const Eigen::Matrix4d covariance = solver.eigenvectors() * variance.asDiagonal() * solver.eigenvectors().transpose();
-  const auto worst = [&](const Eigen::Matrix<double, 2, 4>& J) {
-    const Eigen::Matrix2d c = J * covariance * J.transpose();
-    return std::sqrt(Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d>(c).eigenvalues()[1]);
-  };
-  return {worst(direction), worst(position)};
+  const Eigen::Matrix4d covariance = covarianceOf(information);
+  return {worstSigma(direction * covariance * direction.transpose()),
+          worstSigma(position * covariance * position.transpose())};
 }
 
 double planeSigma(const SlidingWindow& window, const FactorParams& params, const LineSighting& s,

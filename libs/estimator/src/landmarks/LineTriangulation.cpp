@@ -1,24 +1,18 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "landmarks/LineTriangulation.h"
 
-#include <Eigen/Cholesky>
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 #include <limits>
 
 #include "landmarks/LineDegeneracy.h"
 #include "lintel/factors/StructuralFactor.h"
+#include "lintel/geometry/PlaneIntersection.h"
+#include "lintel/geometry/SmallLeastSquares.h"
 
 namespace lintel {
 
 namespace {
-
-struct LineNormal {
-  Eigen::Matrix4d H = Eigen::Matrix4d::Zero();
-  Eigen::Vector4d b = Eigen::Vector4d::Zero();
-  double cost = 0;
-};
 
 /// What else is known of a line.
 struct KnownDirection {
@@ -27,9 +21,9 @@ struct KnownDirection {
 };
 
 /// Normal equations of the line alone, poses and calibration fixed.
-LineNormal normalEquations(const SlidingWindow& window, const FactorParams& params, const LineTrack& track,
-                           const LineBlock& line, const KnownDirection* known = nullptr) {
-  LineNormal normal;
+NormalEquations4 normalEquations(const SlidingWindow& window, const FactorParams& params, const LineTrack& track,
+                                 const LineBlock& line, const KnownDirection* known = nullptr) {
+  NormalEquations4 normal;
   const ceres::CauchyLoss loss(params.line_loss_width);
   RowMajorMatrix plus(kLineSize, kLineTangent);
   LineManifold().PlusJacobian(line.data(), plus.data());
@@ -45,8 +39,7 @@ LineNormal normalEquations(const SlidingWindow& window, const FactorParams& para
     double rho[3];
     loss.Evaluate(r.squaredNorm(), rho);
     const Eigen::Matrix<double, 2, 4> J = J_ambient * plus;
-    normal.H += rho[1] * J.transpose() * J;
-    normal.b += rho[1] * J.transpose() * r;
+    normal.add(J, r, rho[1]);
     normal.cost += 0.5 * rho[0];
   }
   if (known) {
@@ -65,27 +58,19 @@ LineNormal normalEquations(const SlidingWindow& window, const FactorParams& para
 
 void refine(const SlidingWindow& window, const FactorParams& params, LineTrack& track,
             const KnownDirection* known = nullptr) {
-  const LineManifold manifold;
-  LineNormal now = normalEquations(window, params, track, track.line, known);
-  double damping = 1e-3;
-  for (int i = 0; i < 10; ++i) {
-    Eigen::Matrix4d H = now.H;
-    H.diagonal() *= 1 + damping;
-    H.diagonal().array() += 1e-9;
-    const Eigen::Vector4d step = -H.ldlt().solve(now.b);
-    LineBlock moved;
-    manifold.Plus(track.line.data(), step.data(), moved.data());
-    const LineNormal next = normalEquations(window, params, track, moved, known);
-    if (next.cost < now.cost) {
-      const bool converged = now.cost - next.cost < 1e-4 * now.cost;
-      track.line = moved;
-      now = next;
-      damping *= 0.1;
-      if (converged) break;
-    } else {
-      damping *= 10;
-    }
-  }
+  LevenbergParams levenberg;
+  levenberg.damping = 1e-3;
+  levenberg.max_damping = std::numeric_limits<double>::infinity();
+  levenberg.absolute_damping = 1e-9;
+  levenberg.min_relative_decrease = 1e-4;
+  levenberg.max_iterations = 10;
+  const auto linearise = [&](const LineBlock& line) { return normalEquations(window, params, track, line, known); };
+  const auto moved = [](const LineBlock& line, const Eigen::Vector4d& step) {
+    LineBlock result;
+    LineManifold().Plus(line.data(), step.data(), result.data());
+    return result;
+  };
+  levenbergMarquardt(levenberg, track.line, linearise, moved);
 }
 
 /// The ends of a sighting on the line, in the camera's frame. How many of them are in front of it.
@@ -116,33 +101,21 @@ SeenMiddle middleOf(const SlidingWindow& window, const LineTrack& track) {
   return {(middle_w - track.origin_w).dot(d_w), std::max(0.5 * (ends_c[0].z() + ends_c[1].z()), 0.1)};
 }
 
-/// Start from all observation planes [Lim2021, eq. make_plane]: d is what all normals are perpendicular to.
-bool intersectPlanes(const SlidingWindow& window, LineTrack& track) {
-  Eigen::Matrix3d normals = Eigen::Matrix3d::Zero();
-  std::vector<std::pair<Eigen::Vector3d, Eigen::Vector3d>> planes;  // normal and camera centre
+/// Start from all observation planes, abreast of `track.origin_w`.
+bool startFromPlanes(const SlidingWindow& window, LineTrack& track) {
+  std::vector<ObservationPlane> planes;
   for (const LineSighting& s : track.sightings) {
     const Pose T_w_c = window.T_w_c(window.frame(s.frame));
     const Eigen::Vector3d start = s.start.corrected(window.correction.data()).homogeneous();
     const Eigen::Vector3d end = s.end.corrected(window.correction.data()).homogeneous();
     const Eigen::Vector3d cross = start.cross(end);
     if (cross.norm() < 1e-6) return false;
-    const Eigen::Vector3d n_w = T_w_c.q * cross.normalized();
-    planes.emplace_back(n_w, T_w_c.p);
-    normals += n_w * n_w.transpose();
+    planes.push_back({T_w_c.q * cross.normalized(), T_w_c.p});
   }
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(normals);
-  const Eigen::Vector3d d = solver.eigenvectors().col(0);
-  // the point nearest to the newest camera that lies in all planes, in the plane perpendicular to d
-  Eigen::Matrix3d A = d * d.transpose();
-  Eigen::Vector3d b = d * d.dot(track.origin_w);
-  for (const auto& [n_w, centre] : planes) {
-    A += n_w * n_w.transpose();
-    b += n_w * n_w.dot(centre);
-  }
-  if (solver.eigenvalues()[1] < 1e-12) return false;
-  const Eigen::Vector3d p_w = A.ldlt().solve(b);
-  if (!p_w.allFinite()) return false;
-  track.line = toBlock(toOrthonormal(movedOrigin(lineThrough(p_w, p_w + d), track.origin_w)));
+  const auto line = intersectPlanes(planes, track.origin_w);
+  if (!line) return false;
+  const PluckerLine line_w = lineThrough(line->point_w, line->point_w + line->direction_w);
+  track.line = toBlock(toOrthonormal(movedOrigin(line_w, track.origin_w)));
   return true;
 }
 
@@ -176,7 +149,7 @@ void updateLineUncertainty(const SlidingWindow& window, const EstimatorParams& p
   if (track.verdict != LineVerdict::kNone &&
       static_cast<int>(track.sightings.size()) < params.landmarks.line_min_observations)
     return;
-  const LineNormal normal = normalEquations(window, params.factors, track, track.line);
+  const NormalEquations4 normal = normalEquations(window, params.factors, track, track.line);
   const SeenMiddle middle = middleOf(window, track);
   const LineUncertainty uncertainty = uncertaintyOf(lineFromBlock(track.line.data()), normal.H, middle.along_m);
   track.sigma_direction_rad = uncertainty.direction_rad;
@@ -189,7 +162,7 @@ bool triangulateLine(const SlidingWindow& window, const EstimatorParams& params,
   track.verdict = LineVerdict::kNone;
   if (track.sightings.size() < 2) return false;
   track.origin_w = window.T_w_c(window.frame(track.sightings.back().frame)).p;
-  if (!intersectPlanes(window, track)) {
+  if (!startFromPlanes(window, track)) {
     track.verdict = LineVerdict::kDirectionUnknown;
     track.sigma_direction_rad = track.sigma_distance_m = std::numeric_limits<double>::infinity();
     return false;
@@ -219,7 +192,7 @@ bool triangulateTied(const SlidingWindow& window, const EstimatorParams& params,
   LineTrack tied = track;
   refine(window, params.factors, tied, &known);
   if (!(lineError(window, tied) < params.landmarks.line_max_error_px)) return false;
-  const LineNormal normal = normalEquations(window, params.factors, tied, tied.line, &known);
+  const NormalEquations4 normal = normalEquations(window, params.factors, tied, tied.line, &known);
   const SeenMiddle middle = middleOf(window, tied);
   const LineUncertainty uncertainty = uncertaintyOf(lineFromBlock(tied.line.data()), normal.H, middle.along_m);
   if (uncertainty.distance_m > kMaxRelativeSigma * middle.depth_m) return false;

@@ -1,15 +1,16 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "landmarks/ParallelGroups.h"
 
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <vector>
 
+#include "landmarks/EndpointTriangulation.h"
 #include "landmarks/LineDegeneracy.h"
-#include "landmarks/LineEnds.h"
 #include "landmarks/LineTriangulation.h"
+#include "lintel/core/Quantiles.h"
+#include "lintel/geometry/SmallMatrices.h"
 
 namespace lintel {
 
@@ -67,9 +68,7 @@ double medianDepth(const SlidingWindow& window) {
   std::vector<double> depths;
   for (const auto& [id, track] : window.points)
     if (track.triangulated) depths.push_back((T_c_w * window.positionOf(track)).z());
-  if (depths.empty()) return 5;
-  std::nth_element(depths.begin(), depths.begin() + static_cast<std::ptrdiff_t>(depths.size() / 2), depths.end());
-  return std::max(0.5, depths[depths.size() / 2]);
+  return depths.empty() ? 5 : std::max(0.5, upperMedian(depths));
 }
 
 /// Gives a line the group's direction within its newest plane, and the depth of its ends where they show one.
@@ -183,10 +182,10 @@ Support supportOf(SlidingWindow& window, const EstimatorParams& params, const Ei
     }
   }
   support.score -= 2 * kByChance * lines;
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(normals);
+  const SymmetricEigen<3> eigen = symmetricEigen(normals);
   // one plane only, or planes that are all the same, say nothing about a direction in them
-  const bool determined = solver.eigenvalues()[1] > 0.01 * solver.eigenvalues()[2];
-  support.d_w = determined ? Eigen::Vector3d(solver.eigenvectors().col(0)) : d_w;
+  const bool determined = eigen.values[1] > 0.01 * eigen.values[2];
+  support.d_w = determined ? Eigen::Vector3d(eigen.vectors.col(0)) : d_w;
   return support;
 }
 

@@ -5,6 +5,8 @@
 #include <cmath>
 #include <set>
 
+#include "lintel/core/Quantiles.h"
+
 namespace lintel {
 
 namespace {
@@ -27,9 +29,7 @@ class Collector {
     const double residuals = 2 * static_cast<double>(norms_.size());
     const double redundant = residuals - freedom_ * static_cast<double>(landmarks_.size());
     if (norms_.size() < kLeastResiduals || redundant < static_cast<double>(kLeastResiduals)) return 1;
-    const auto middle = norms_.begin() + static_cast<std::ptrdiff_t>(norms_.size() / 2);
-    std::nth_element(norms_.begin(), middle, norms_.end());
-    return *middle / kMedianOfNorm * std::sqrt(residuals / redundant);
+    return upperMedian(norms_) / kMedianOfNorm * std::sqrt(residuals / redundant);
   }
 
  private:

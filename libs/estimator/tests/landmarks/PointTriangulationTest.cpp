@@ -15,15 +15,21 @@ using namespace test;
 
 const LandmarkParams kParams;
 const std::vector<Pose> kSideways{at(0, 0, 0), at(0.3, 0.02, 0), at(0.6, 0, 0.05), at(1, -0.1, 0)};
+const Eigen::Vector3d kPoint(0.7, -0.4, 5);
+
+/// Frames at kSideways that all see a point as track 1.
+SlidingWindow windowThatSees(const Eigen::Vector3d& p_w) {
+  SlidingWindow window = windowAt(kSideways);
+  for (FrameId k = 0; k < 4; ++k) seePoint(window, 1, k, p_w);
+  return window;
+}
 
 TEST(PointTriangulation, IsExactWithoutNoise) {
-  SlidingWindow window = windowAt(kSideways);
-  const Eigen::Vector3d p_w(0.7, -0.4, 5);
-  for (FrameId k = 0; k < 4; ++k) seePoint(window, 1, k, p_w);
+  SlidingWindow window = windowThatSees(kPoint);
   PointTrack& track = window.points[1];
   ASSERT_TRUE(triangulatePoint(window, kParams, 1, track));
   EXPECT_TRUE(track.triangulated);
-  EXPECT_LT((window.positionOf(track) - p_w).norm(), 1e-9);
+  EXPECT_LT((window.positionOf(track) - kPoint).norm(), 1e-9);
   EXPECT_NEAR(track.point.norm(), 1, 1e-12);
   EXPECT_NEAR(reprojectionError(window, track), 0, 1e-6);
 }
@@ -73,9 +79,7 @@ TEST(PointTriangulation, ContradictionsAndPointsBehindAreRefused) {
 }
 
 TEST(ReprojectionError, IsTheMeanDistanceInPixels) {
-  SlidingWindow window = windowAt(kSideways);
-  const Eigen::Vector3d p_w(0.7, -0.4, 5);
-  for (FrameId k = 0; k < 4; ++k) seePoint(window, 1, k, p_w);
+  SlidingWindow window = windowThatSees(kPoint);
   PointTrack& track = window.points[1];
   ASSERT_TRUE(triangulatePoint(window, kParams, 1, track));
   track.sightings[2].px += Eigen::Vector2d(3, 4);

@@ -46,8 +46,8 @@ struct LineErrors {
   SegmentErrors constrained_matched;  ///< direction held by parallel lines; degenerate or not
   double duplicates =
       std::numeric_limits<double>::quiet_NaN();  ///< matched length / length of the edges it covers; 1 = none
-  double duplicates_not_seen_apart =
-      std::numeric_limits<double>::quiet_NaN();  ///< lines that images show as two left out
+  double true_duplicates =
+      std::numeric_limits<double>::quiet_NaN();  ///< the same, without lines that images show side by side
 };
 
 /// Distance of a point of the true world to its nearest surface [m].

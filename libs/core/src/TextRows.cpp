@@ -1,12 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "TextRows.h"
+#include "lintel/core/TextRows.h"
 
 #include <cerrno>
 #include <charconv>
 #include <cmath>
+#include <cstdlib>
 #include <cstring>
-
-#include "lintel/evaluation/TrajectoryFile.h"
 
 namespace lintel {
 
@@ -20,10 +19,20 @@ std::string_view trimmed(std::string_view text) {
   return text.substr(first, text.find_last_not_of(kBlanks) - first + 1);
 }
 
+template <class T>
+std::optional<T> parsed(std::string_view text) {
+  if (!text.empty() && text.front() == '+') text.remove_prefix(1);
+  T value{};
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  if (error != std::errc() || end != text.data() + text.size()) return std::nullopt;
+  return value;
+}
+
 }  // namespace
 
-TextRows::TextRows(const std::string& path) : path_(path), in_(path) {
-  if (!in_) throw EvaluationError(path + ": cannot be opened (" + std::strerror(errno) + "); check the name");
+TextRows::TextRows(std::string path, Throw throw_error)
+    : path_(std::move(path)), throw_error_(throw_error), in_(path_) {
+  if (!in_) raise(path_ + ": cannot be opened (" + std::strerror(errno) + "); check the name");
 }
 
 bool TextRows::next(bool skip_comments) {
@@ -34,7 +43,7 @@ bool TextRows::next(bool skip_comments) {
     split();
     return true;
   }
-  if (in_.bad()) throw EvaluationError(path_ + ": cannot be read to its end; give a text file");
+  if (in_.bad()) raise(path_ + ": cannot be read to its end; give a text file");
   return false;
 }
 
@@ -52,21 +61,28 @@ void TextRows::split() {
   }
 }
 
-void TextRows::fail(const std::string& what) const {
-  throw EvaluationError(path_ + ":" + std::to_string(line_number_) + ": " + what);
+void TextRows::raise(const std::string& message) const {
+  throw_error_(message);
+  std::abort();  // throw_error_ has returned
+}
+
+void TextRows::fail(const std::string& what) const { raise(where() + ": " + what); }
+
+std::optional<double> TextRows::numberIfAny(std::size_t index) const {
+  return index < fields_.size() ? parsed<double>(fields_[index]) : std::nullopt;
+}
+
+std::optional<std::int64_t> TextRows::integerIfAny(std::size_t index) const {
+  return index < fields_.size() ? parsed<std::int64_t>(fields_[index]) : std::nullopt;
 }
 
 template <class T>
 T TextRows::parse(std::size_t index, const char* expected) const {
   const std::string column = "column " + std::to_string(index + 1);
   if (index >= fields_.size()) fail(column + " is missing");
-  std::string_view text = fields_[index];
-  if (!text.empty() && text.front() == '+') text.remove_prefix(1);
-  T value{};
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-  if (error != std::errc() || end != text.data() + text.size())
-    fail(column + " should be " + expected + ", but is '" + std::string(fields_[index]) + "'");
-  return value;
+  const std::optional<T> value = parsed<T>(fields_[index]);
+  if (!value) fail(column + " should be " + expected + ", but is '" + std::string(fields_[index]) + "'");
+  return *value;
 }
 
 double TextRows::number(std::size_t index) const {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "lintel/mapping/SegmentEnds.h"
+#include "LineExtent.h"
 
 #include <gtest/gtest.h>
 

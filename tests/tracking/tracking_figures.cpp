@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// line_tracking RECORDING [key=value ...]: the front end alone on a recording, and what it did, measured. With true
-// edges (rendered recordings): identity switches and honesty of sigma_px. Keys: mode, to_s, switches (1: list them),
-// and those of the table in main().
+// tracking_figures RECORDING [key=value ...]: the front end alone on a recording, and what it did, measured. With true
+// poses: errors of points (PointErrors.h). With true edges, too (rendered recordings): identity switches of lines and
+// honesty of their sigma_px (IdentityCheck.h). Keys: see setKey(); lines=0 tracks points only.
 #include <time.h>
 
 #include <cstdio>
@@ -14,6 +14,7 @@
 #include <string>
 
 #include "IdentityCheck.h"
+#include "PointErrors.h"
 #include "TrueEdges.h"
 #include "lintel/sensing/Recording.h"
 #include "lintel/tracking/FrontEnd.h"
@@ -85,7 +86,9 @@ void setKey(const std::string& argument, FrontEndParams& params, RecordingParams
 }
 
 int run(int argc, char** argv) {
-  if (argc < 2) throw std::runtime_error("usage: line_tracking RECORDING [mode=flow|descriptor] [to_s=S] [switches=1]");
+  if (argc < 2)
+    throw std::runtime_error(
+        "usage: tracking_figures RECORDING [mode=flow|descriptor] [lines=0] [to_s=S] [switches=1]");
   const std::string path = argv[1];
   FrontEndParams params;
   RecordingParams recording_params;
@@ -94,10 +97,12 @@ int run(int argc, char** argv) {
   for (int i = 2; i < argc; ++i) setKey(argv[i], params, recording_params, list);
 
   const auto recording = openRecording(path, recording_params);
+  const truth::TruePoses poses(path);
+  truth::PointErrors points(poses, recording->rig());
   std::unique_ptr<truth::TrueEdges> edges;
   std::unique_ptr<truth::IdentityCheck> check;
   if (std::filesystem::exists(path + "/mav0/lines0/visible.csv")) {
-    edges = std::make_unique<truth::TrueEdges>(path, recording->rig());
+    edges = std::make_unique<truth::TrueEdges>(path, recording->rig(), poses);
     check = std::make_unique<truth::IdentityCheck>(*edges);
   }
   FrontEnd front_end(recording->rig(), params);
@@ -111,9 +116,11 @@ int run(int argc, char** argv) {
       ++sightings[line.id].frames;
       sightings[line.id].window_frames += k % 2 == 0;
     }
+    points.add(tracks);
     if (check) check->add(tracks);
   }
   printSummary(front_end.statistics(), sightings, cpu_s);
+  if (!poses.empty()) points.print();
   if (check) printTruth(*check, list);
   return 0;
 }
@@ -125,7 +132,7 @@ int main(int argc, char** argv) {
   try {
     return lintel::run(argc, argv);
   } catch (const std::exception& error) {
-    std::cerr << "line_tracking: " << error.what() << "\n";
+    std::cerr << "tracking_figures: " << error.what() << "\n";
     return 1;
   }
 }

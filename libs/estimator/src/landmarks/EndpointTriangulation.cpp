@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "landmarks/LineEnds.h"
+#include "landmarks/EndpointTriangulation.h"
 
-#include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
+
+#include "lintel/geometry/SmallMatrices.h"
 
 namespace lintel {
 
@@ -36,8 +37,7 @@ SeenPoint triangulateEnd(const SlidingWindow& window, const LineTrack& track, bo
     views.emplace_back(T_w_c, seen);
   }
   if (views.size() < kLeastSightings || views.size() + 1 < track.sightings.size()) return {};
-  const Eigen::LDLT<Eigen::Matrix3d> solver(A);
-  const Eigen::Vector3d p_w = solver.solve(b);
+  const Eigen::Vector3d p_w = solveLdlt(A, b);
   if (!p_w.allFinite()) return {};
   double sum = 0;
   for (const auto& [T_w_c, seen] : views) {
