@@ -10,8 +10,8 @@
 #include "landmarks/LineTriangulation.h"
 #include "landmarks/ParallelGroups.h"
 #include "landmarks/PointTriangulation.h"
-#include "lintel/geometry/Frames.h"
 #include "lintel/geometry/Rotation.h"
+#include "lintel/inertial/Propagation.h"
 #include "solver/WindowSolver.h"
 #include "window/AdaptiveWeights.h"
 #include "window/FailureDetection.h"
@@ -39,15 +39,8 @@ ImuNoise scaledNoise(const ImuNoise& noise, const FactorParams& p) {
           noise.accel_noise * p.accel_noise_scale, noise.accel_walk * p.accel_walk_scale};
 }
 
-/// Where the IMU says a state goes.
-void propagate(const WindowFrame& from, const Preintegration& imu, Pose& T_w_b, Eigen::Vector3d& v_w_b) {
-  const double dt = imu.dt_s();
-  const auto delta = imu.corrected(biasOf(from.motion.data()));
-  const Pose T_w_b0 = from.T_w_b();
-  const Eigen::Vector3d v0 = velocityOf(from.motion.data());
-  T_w_b.q = (T_w_b0.q * delta.delta_R).normalized();
-  T_w_b.p = T_w_b0.p + v0 * dt + 0.5 * gravityW() * dt * dt + T_w_b0.q * delta.delta_p;
-  v_w_b = v0 + gravityW() * dt + T_w_b0.q * delta.delta_v;
+InertialState stateOf(const WindowFrame& frame) {
+  return {frame.T_w_b(), velocityOf(frame.motion.data()), biasOf(frame.motion.data())};
 }
 
 }  // namespace
@@ -131,8 +124,10 @@ WindowUpdate Estimator::Impl::skipFrame(const FrameTracks& tracks) {
   if (!tracking_) return update;
   Preintegration imu(biasOf(window_.frames.back().motion.data()), noise_);
   imu.append(pending_imu_);
-  propagate(window_.frames.back(), imu, update.T_w_b, update.v_w_b);
-  update.bias = biasOf(window_.frames.back().motion.data());
+  const InertialState state = propagated(stateOf(window_.frames.back()), imu);
+  update.T_w_b = state.T_w_b;
+  update.v_w_b = state.v_w_b;
+  update.bias = state.bias;
   update.status = EstimatorStatus::kPropagated;
   return update;
 }
@@ -145,12 +140,10 @@ void Estimator::Impl::addFrame(const FrameTracks& tracks) {
     const WindowFrame& before = window_.frames.back();
     frame.imu = std::make_shared<Preintegration>(biasOf(before.motion.data()), noise_);
     frame.imu->append(pending_imu_);
-    Pose T_w_b;
-    Eigen::Vector3d v_w_b;
-    propagate(before, *frame.imu, T_w_b, v_w_b);
-    frame.pose = toBlock(T_w_b);
+    const InertialState state = propagated(stateOf(before), *frame.imu);
+    frame.pose = toBlock(state.T_w_b);
     frame.motion = before.motion;
-    frame.motion.segment<3>(kVelocityAt) = v_w_b;
+    frame.motion.segment<3>(kVelocityAt) = state.v_w_b;
   }
   pending_imu_.erase(pending_imu_.begin(), pending_imu_.empty() ? pending_imu_.end() : pending_imu_.end() - 1);
   newest_t_ns_ = tracks.t_ns;
@@ -214,13 +207,7 @@ void Estimator::Impl::solve(WindowUpdate& update) {
   triangulateLines(window_, params_);
   if (params_.degeneracy.lines == "constrain") groupParallelLines(window_, params_);
   WindowFactors factors(window_, params_.factors);
-  factors.addPriors();
-  factors.addGauge();
-  factors.addCalibrationPriors(params_.calibration, rig_.T_b_c);
-  factors.addImu();
-  factors.addRest(params_.rest_velocity_sigma);
-  factors.addPoints();
-  factors.addLines(params_.degeneracy);
+  factors.addAll(params_, rig_.T_b_c);
   const SolveLimits limits{params_.max_iterations, settledMove(params_.degeneracy)};
   update.iterations = solveWindow(window_, factors.factors(), params_.calibration, limits).iterations;
   if (params_.factors.adaptive_weights)

@@ -20,22 +20,4 @@ CameraView::CameraView(const double* pose, const double* extrinsics, const doubl
   d_offset << R_stamp * motion.v_b + R_w_b * motion.omega_b.cross(T_b_c.p), R_c_b * motion.omega_b;  // Jr(w dt) w = w
 }
 
-void CameraView::writeJacobians(const double* pose, const double* extrinsics, const CameraJacobian& d_camera,
-                                const IntrinsicsJacobian& d_intrinsics, double** jacobians) const {
-  const auto writePose = [&](const Eigen::Matrix<double, kCameraTangent, kPoseTangent>& d_block, const double* block,
-                             double* out) {
-    const Eigen::Matrix<double, 2, kPoseTangent> tangent = d_camera * d_block;
-    Eigen::Map<Eigen::Matrix<double, 2, kPoseSize, Eigen::RowMajor>> J(out);
-    J.leftCols<3>() = tangent.leftCols<3>();
-    J.rightCols<4>() = tangent.rightCols<3>() * rotationLift(poseFromBlock(block).q);
-  };
-  if (jacobians[0]) writePose(d_pose, pose, jacobians[0]);
-  if (jacobians[1]) writePose(d_extrinsics, extrinsics, jacobians[1]);
-  if (jacobians[2]) {
-    Eigen::Map<Eigen::Matrix<double, 2, kCorrectionSize, Eigen::RowMajor>> J(jacobians[2]);
-    J.leftCols<kIntrinsicsSize>() = d_intrinsics;
-    J.col(kTimeOffsetAt) = d_camera * d_offset;
-  }
-}
-
 }  // namespace lintel

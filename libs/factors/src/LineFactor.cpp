@@ -32,25 +32,10 @@ void LineFactor::linearise(const CameraView& view, const double* correction, con
   const Eigen::Matrix<double, 2, 3> d_dw = d_nw * skew(from_camera_w);
   // u1 and u2 turn with U: d(U e) = -U [e]x dpsi
   const Eigen::Matrix<double, 2, 3> nU = cosine * d_nw * U, dU = sine * d_dw * U;
-  out.d_line.col(0) = dU.col(2);
-  out.d_line.col(1) = -nU.col(2);
-  out.d_line.col(2) = nU.col(1) - dU.col(0);
-  out.d_line.col(3) = -sine * d_nw * U.col(0) + cosine * d_dw * U.col(1);
-}
-
-bool LineFactor::Evaluate(double const* const* parameters, double* residuals, double** jacobians) const {
-  const CameraView view(parameters[0], parameters[1], parameters[2], motion_, jacobians != nullptr);
-  LineLinearisation result;
-  linearise(view, parameters[2], parameters[3], jacobians != nullptr, result);
-  Eigen::Vector2d::Map(residuals) = result.residual;
-  if (!jacobians) return true;
-  view.writeJacobians(parameters[0], parameters[1], result.d_camera, result.d_intrinsics, jacobians);
-  if (jacobians[3]) {
-    Eigen::Map<Eigen::Matrix<double, 2, kLineSize, Eigen::RowMajor>> J(jacobians[3]);
-    J.leftCols<4>() = result.d_line.leftCols<3>() * rotationLift(lineFromBlock(parameters[3]).U);
-    J.col(4) = result.d_line.col(3);
-  }
-  return true;
+  out.d_target.col(0) = dU.col(2);
+  out.d_target.col(1) = -nU.col(2);
+  out.d_target.col(2) = nU.col(1) - dU.col(0);
+  out.d_target.col(3) = -sine * d_nw * U.col(0) + cosine * d_dw * U.col(1);
 }
 
 }  // namespace lintel

@@ -30,22 +30,8 @@ void PointFactor::linearise(const CameraView& view, const double* correction, co
   const double r2 = n.squaredNorm();
   out.d_intrinsics << weight_ * distorted.x(), 0, weight_, 0, focal.x() * n.x() * r2, focal.x() * n.x() * r2 * r2, 0,
       weight_ * distorted.y(), 0, weight_, focal.y() * n.y() * r2, focal.y() * n.y() * r2 * r2;
-  out.d_point.leftCols<3>() = d_gw;
-  out.d_point.col(3) = d_gw * from_camera_w;
-}
-
-bool PointFactor::Evaluate(double const* const* parameters, double* residuals, double** jacobians) const {
-  const CameraView view(parameters[0], parameters[1], parameters[2], motion_, jacobians != nullptr);
-  PointLinearisation result;
-  linearise(view, parameters[2], parameters[3], jacobians != nullptr, result);
-  Eigen::Vector2d::Map(residuals) = result.residual;
-  if (!jacobians) return true;
-  view.writeJacobians(parameters[0], parameters[1], result.d_camera, result.d_intrinsics, jacobians);
-  if (jacobians[3]) {
-    Eigen::Map<Eigen::Matrix<double, 2, kPointSize, Eigen::RowMajor>> J(jacobians[3]);
-    J = result.d_point;
-  }
-  return true;
+  out.d_target.leftCols<3>() = d_gw;
+  out.d_target.col(3) = d_gw * from_camera_w;
 }
 
 }  // namespace lintel

@@ -6,9 +6,9 @@
 #include <ceres/solver.h>
 
 #include <cmath>
-#include <limits>
 
 #include "KeyframeCameras.h"
+#include "lintel/estimator/StatePriors.h"
 
 namespace lintel {
 
@@ -23,17 +23,9 @@ ceres::Problem::Options problemOptions() {
   return o;
 }
 
-const std::shared_ptr<const StateManifold>& poseManifold() {
-  static const std::shared_ptr<const StateManifold> manifold = std::make_shared<PoseManifold>();
-  return manifold;
-}
-const std::shared_ptr<const StateManifold>& motionManifold() {
-  static const std::shared_ptr<const StateManifold> manifold = std::make_shared<VectorManifold>(kMotionSize);
-  return manifold;
-}
-const std::shared_ptr<const StateManifold>& correctionManifold() {
-  static const std::shared_ptr<const StateManifold> manifold = std::make_shared<VectorManifold>(kCorrectionSize);
-  return manifold;
+StateManifold* poseManifold() {
+  static PoseManifold manifold;
+  return &manifold;
 }
 StateManifold* lineManifold() {
   static LineManifold manifold;
@@ -121,9 +113,8 @@ void BatchProblem::placeBlocks() {
         toBlock(toOrthonormal({p.cross(line.estimate.direction_w), line.estimate.direction_w}));
     problem_->AddParameterBlock(at(lines_at_ + i * kLineSize), kLineSize, lineManifold());
   }
-  auto* pose = const_cast<StateManifold*>(poseManifold().get());
   Eigen::Map<PoseBlock>(at(extrinsics_at_)) = toBlock(material_.rig.T_b_c);
-  problem_->AddParameterBlock(at(extrinsics_at_), kPoseSize, pose);
+  problem_->AddParameterBlock(at(extrinsics_at_), kPoseSize, poseManifold());
   Eigen::Map<CorrectionBlock>(at(correction_at_)) =
       correctionOf(material_.rig.camera, calibrated_.camera, material_.time_offset_s);
   problem_->AddParameterBlock(at(correction_at_), kCorrectionSize);
@@ -135,7 +126,7 @@ void BatchProblem::placeBlocks() {
     const RetiredKeyframe& keyframe = material_.keyframes[k];
     Eigen::Map<PoseBlock>(at(poseAt(k))) = toBlock(keyframe.T_w_b);
     Eigen::Map<MotionBlock>(at(motionAt(k))) << keyframe.v_w_b, keyframe.bias.gyro, keyframe.bias.accel;
-    problem_->AddParameterBlock(at(poseAt(k)), kPoseSize, pose);
+    problem_->AddParameterBlock(at(poseAt(k)), kPoseSize, poseManifold());
     problem_->AddParameterBlock(at(motionAt(k)), kMotionSize);
   }
 }
@@ -145,39 +136,15 @@ void BatchProblem::addPriors() {
     problem_->AddResidualBlock(cost.get(), nullptr, at(block));
     priors_.push_back(std::move(cost));
   };
-  const CalibrationParams& c = estimator_.calibration;
-  constexpr double kFixed = 1e-9;
-  Eigen::VectorXd sigma(kPoseTangent);
-  sigma << Eigen::Vector3d::Constant(c.refine_extrinsics ? c.extrinsic_translation_sigma_m : kFixed),
-      Eigen::Vector3d::Constant(c.refine_extrinsics ? c.extrinsic_rotation_sigma_rad : kFixed);
-  add(makeBlockPrior(poseManifold(), toBlock(calibrated_.T_b_c), sigma), extrinsics_at_);
-  Eigen::VectorXd correction(kCorrectionSize);
-  correction << c.focal_sigma_px, c.focal_sigma_px, c.centre_sigma_px, c.centre_sigma_px, c.distortion_sigma,
-      c.distortion_sigma, c.time_offset_sigma_s;
-  if (!c.refine_camera) correction.head<kTimeOffsetAt>().setConstant(kFixed);
-  if (!c.refine_time_offset) correction[kTimeOffsetAt] = kFixed;
-  add(makeBlockPrior(correctionManifold(), CorrectionBlock::Zero(), correction), correction_at_);
-
-  const double free = std::numeric_limits<double>::infinity();
+  add(makeExtrinsicsPrior(estimator_.calibration, calibrated_.T_b_c), extrinsics_at_);
+  add(makeCorrectionPrior(estimator_.calibration), correction_at_);
   for (std::size_t k = 0; k < material_.keyframes.size(); ++k) {
     const RetiredKeyframe& keyframe = material_.keyframes[k];
-    if (keyframe.at_rest) {
-      Eigen::VectorXd rest = Eigen::VectorXd::Constant(kMotionSize, free);
-      rest.segment<3>(kVelocityAt).setConstant(estimator_.rest_velocity_sigma);
-      add(makeBlockPrior(motionManifold(), MotionBlock::Zero(), rest), motionAt(k));
-    }
+    if (keyframe.at_rest) add(makeRestPrior(estimator_.rest_velocity_sigma), motionAt(k));
     if (keyframe.imu && k > 0) continue;
     // the first of a run: its place and yaw are free to choose, its biases are known about
-    constexpr double kWeight = 1e3;
-    Eigen::MatrixXd A = Eigen::MatrixXd::Zero(4, kPoseTangent);
-    A.topLeftCorner<3, 3>() = Eigen::Matrix3d::Identity() * kWeight;
-    A.block<1, 3>(3, 3) = Eigen::RowVector3d::UnitZ() * keyframe.T_w_b.R() * kWeight;
-    std::vector<PriorBlock> blocks{{poseManifold(), toBlock(keyframe.T_w_b)}};
-    add(std::make_unique<PriorFactor>(std::move(blocks), std::move(A), Eigen::VectorXd::Zero(4)), poseAt(k));
-    Eigen::VectorXd biases = Eigen::VectorXd::Constant(kMotionSize, free);
-    biases.segment<3>(kBiasGyroAt).setConstant(estimator_.initializer.bias_gyro_sigma);
-    biases.segment<3>(kBiasAccelAt).setConstant(estimator_.initializer.bias_accel_sigma);
-    add(makeBlockPrior(motionManifold(), MotionBlock::Zero(), biases), motionAt(k));
+    add(makeGaugePrior(toBlock(keyframe.T_w_b)), poseAt(k));
+    add(makeBiasPrior(estimator_.initializer), motionAt(k));
   }
 }
 

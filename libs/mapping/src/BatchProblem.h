@@ -11,9 +11,7 @@
 
 #include "lintel/factors/ImuFactor.h"
 #include "lintel/factors/LineFactor.h"
-#include "lintel/factors/Manifolds.h"
 #include "lintel/factors/PointFactor.h"
-#include "lintel/factors/PriorFactors.h"
 #include "lintel/factors/StructuralFactor.h"
 #include "lintel/mapping/BatchRefinement.h"
 

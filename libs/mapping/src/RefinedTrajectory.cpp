@@ -1,34 +1,19 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <algorithm>
 
-#include "lintel/geometry/Frames.h"
 #include "lintel/geometry/Rotation.h"
+#include "lintel/inertial/Propagation.h"
 #include "lintel/mapping/BatchRefinement.h"
 
 namespace lintel {
 
 namespace {
 
-struct State {
-  Pose T_w_b;
-  Eigen::Vector3d v_w_b = Eigen::Vector3d::Zero();
-};
-
-State propagated(const RetiredKeyframe& from, const Preintegration& imu) {
-  const double dt = imu.dt_s();
-  const auto delta = imu.corrected(from.bias);
-  State s;
-  s.T_w_b.q = (from.T_w_b.q * delta.delta_R).normalized();
-  s.T_w_b.p = from.T_w_b.p + from.v_w_b * dt + 0.5 * gravityW() * dt * dt + from.T_w_b.q * delta.delta_p;
-  s.v_w_b = from.v_w_b + gravityW() * dt + from.T_w_b.q * delta.delta_v;
-  return s;
-}
-
 /// The states that the IMU gives at `times` after `from`, ascending, all within the samples.
-std::vector<State> propagatedTo(const RetiredKeyframe& from, const Preintegration& whole,
-                                const std::vector<std::int64_t>& times) {
+std::vector<InertialState> propagatedTo(const RetiredKeyframe& from, const Preintegration& whole,
+                                        const std::vector<std::int64_t>& times) {
   Preintegration imu(from.bias, whole.noise());
-  std::vector<State> states;
+  std::vector<InertialState> states;
   std::size_t next = 0;
   const ImuBatch& samples = whole.samples();
   for (const std::int64_t t_ns : times) {
@@ -45,7 +30,7 @@ std::vector<State> propagatedTo(const RetiredKeyframe& from, const Preintegratio
       between.accel = a.accel + s * (b.accel - a.accel);
       here.append({between});
     }
-    states.push_back(propagated(from, here));
+    states.push_back(propagated({from.T_w_b, from.v_w_b, from.bias}, here));
   }
   return states;
 }
@@ -55,8 +40,8 @@ void fillInterval(const RetiredKeyframe& from, const RetiredKeyframe& to, const 
                   std::vector<std::pair<std::int64_t, Pose>>& trajectory) {
   std::vector<std::int64_t> all = times;
   all.push_back(to.t_ns);
-  const std::vector<State> states = propagatedTo(from, *to.imu, all);
-  const State& arrived = states.back();
+  const std::vector<InertialState> states = propagatedTo(from, *to.imu, all);
+  const InertialState& arrived = states.back();
   const double T = 1e-9 * static_cast<double>(to.t_ns - from.t_ns);
   const Eigen::Vector3d turn = logRotation(arrived.T_w_b.q.conjugate() * to.T_w_b.q);
   const Eigen::Vector3d missing_p = to.T_w_b.p - arrived.T_w_b.p, missing_v = to.v_w_b - arrived.v_w_b;

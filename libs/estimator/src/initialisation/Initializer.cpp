@@ -17,6 +17,7 @@
 #include "solver/Marginalizer.h"
 #include "solver/WindowSolver.h"
 #include "window/OutlierRejection.h"
+#include "window/WindowFactors.h"
 
 namespace lintel {
 

@@ -145,7 +145,7 @@ double lineError(const SlidingWindow& window, const LineTrack& track) {
 
 void updateLineUncertainty(const SlidingWindow& window, const EstimatorParams& params, LineTrack& track) {
   // after marginalisation has used its sightings a line lives on with what was known
-  if (!track.placed) return;
+  if (!track.distance_known) return;
   if (track.verdict != LineVerdict::kNone &&
       static_cast<int>(track.sightings.size()) < params.landmarks.line_min_observations)
     return;

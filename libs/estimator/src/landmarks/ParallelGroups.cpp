@@ -54,13 +54,13 @@ bool isWitness(const LineTrack& track) {
 /// contradicted. Ends that may still do so are waited for.
 bool mayBeParallel(const SlidingWindow& window, const EstimatorParams& params, LineTrack& track,
                    const Eigen::Vector3d& d_w, double max_misfit) {
-  if (track.alone || directionMisfit(window, params, track, d_w) > max_misfit) return false;
+  if (track.released || directionMisfit(window, params, track, d_w) > max_misfit) return false;
   const SeenEnds ends = triangulateEnds(window, track);
   if (ends.verdict == EndsVerdict::kCorners) {
     const double angle = angleBetween((ends.end_w - ends.start_w).normalized(), d_w);
-    track.alone = angle > std::max(kContradiction_rad, kContradiction * ends.sigma_direction_rad);
+    track.released = angle > std::max(kContradiction_rad, kContradiction * ends.sigma_direction_rad);
   }
-  return !track.alone && (ends.verdict != EndsVerdict::kTooEarly || track.group != 0);
+  return !track.released && (ends.verdict != EndsVerdict::kTooEarly || track.group != 0);
 }
 
 double medianDepth(const SlidingWindow& window) {
@@ -86,17 +86,17 @@ void join(const SlidingWindow& window, LineTrack& track, std::uint64_t group, co
   track.line = toBlock(toOrthonormal(movedOrigin(lineThrough(p_w, p_w + d), track.origin_w)));
   track.group = group;
   track.triangulated = true;
-  track.placed = false;
+  track.distance_known = false;
   track.sigma_distance_m = std::numeric_limits<double>::infinity();
   track.sigma_direction_rad = kKnown_rad;
 }
 
 /// Whether a line knows its direction without its group; if so it takes that.
 bool standsAlone(const SlidingWindow& window, const EstimatorParams& params, LineTrack& track) {
-  if (track.placed) return !track.degenerate();
+  if (track.distance_known) return !track.degenerate();
   LineTrack own = track;
   own.group = 0;
-  own.placed = true;
+  own.distance_known = true;
   if (!triangulateLine(window, params, own) || own.degenerate()) return false;
   track = own;
   return true;
@@ -107,9 +107,9 @@ bool standsAlone(const SlidingWindow& window, const EstimatorParams& params, Lin
 void place(const SlidingWindow& window, const EstimatorParams& params, LineTrack& track, double depth) {
   const std::uint64_t group = track.group;
   const Eigen::Vector3d d_w = window.directions.at(group).d_w;
-  if (track.placed && lineError(window, track) <= params.landmarks.line_max_error_px) return;
+  if (track.distance_known && lineError(window, track) <= params.landmarks.line_max_error_px) return;
   join(window, track, group, d_w, depth);
-  track.placed = triangulateTied(window, params, track, d_w);
+  track.distance_known = triangulateTied(window, params, track, d_w);
 }
 
 void release(SlidingWindow& window, const EstimatorParams& params, double depth) {
@@ -122,7 +122,7 @@ void release(SlidingWindow& window, const EstimatorParams& params, double depth)
       place(window, params, track, depth);
     } else {
       track.group = 0;
-      track.placed = true;
+      track.distance_known = true;
       triangulateLine(window, params, track);  // what it had was the group's direction, not its own
     }
   }
@@ -205,18 +205,13 @@ void found(SlidingWindow& window, const EstimatorParams& params, double depth) {
   joinExisting(window, params, depth);
 }
 
-/// Directions without members for a while go, unless a prior still speaks of them.
+/// Directions without members for a while go.
 void forget(SlidingWindow& window) {
   const FrameId newest = window.frames.back().id;
   for (const auto& [id, track] : window.lines)
     if (isMember(track)) window.directions.at(track.group).last_used = newest;
-  for (auto it = window.directions.begin(); it != window.directions.end();) {
-    const bool in_prior = std::any_of(window.priors.begin(), window.priors.end(), [&](const WindowPrior& prior) {
-      return std::find(prior.blocks.begin(), prior.blocks.end(), BlockKey{BlockKey::kDirection, it->first}) !=
-             prior.blocks.end();
-    });
-    it = !in_prior && it->second.last_used + kForget < newest ? window.directions.erase(it) : std::next(it);
-  }
+  for (auto it = window.directions.begin(); it != window.directions.end();)
+    it = it->second.last_used + kForget < newest ? window.directions.erase(it) : std::next(it);
 }
 
 }  // namespace

@@ -35,10 +35,9 @@ CameraChain::CameraChain(const CameraLayout& layout, const std::vector<CameraVie
     tail_.push_back({kPoseTangent, 1, places.correction + kTimeOffsetAt});
     tail_.push_back({kShared, kIntrinsicsSize, places.correction});
   }
-  Eigen::Index at = kShared + kIntrinsicsSize;
-  for (const Eigen::Index direction : places.directions) {
-    if (direction >= 0) tail_.push_back({at, kDirectionTangent, direction});
-    at += kDirectionTangent;
+  for (std::size_t i = 0; i < places.kept.size(); ++i) {
+    const Eigen::Index at = layout.kept_offsets[i], size = layout.kept_offsets[i + 1] - at;
+    if (places.kept[i] >= 0) tail_.push_back({kShared + kIntrinsicsSize + at, size, places.kept[i]});
   }
 }
 

@@ -4,7 +4,7 @@
 #include <Eigen/Core>
 #include <vector>
 
-#include "solver/LandmarkSystem.h"
+#include "solver/CameraEquations.h"
 
 namespace lintel {
 
@@ -12,11 +12,12 @@ namespace lintel {
 struct StatePlaces {
   std::vector<Eigen::Index> poses;  ///< of the cameras' frames
   Eigen::Index extrinsics = -1, correction = -1;
-  std::vector<Eigen::Index> directions;
+  std::vector<Eigen::Index> kept;  ///< of CameraLayout::kept
 };
 
 /// The chain rule between the cameras' tangent spaces and the states: a camera hangs on its frame's pose, on the
-/// extrinsics and on the time offset; intrinsics and directions are states themselves. All equations: lower triangles.
+/// extrinsics and on the time offset; intrinsics and kept targets are states themselves. All equations: lower
+/// triangles.
 class CameraChain {
  public:
   /// `layout` and `views` must outlive the chain.
@@ -26,14 +27,14 @@ class CameraChain {
   void add(const CameraEquations& cameras, Eigen::MatrixXd& H, Eigen::VectorXd& b) const;
   void addGradient(const Eigen::VectorXd& b_cameras, Eigen::VectorXd& b) const;
 
-  /// How a step of the states moves cameras, intrinsics and directions.
+  /// How a step of the states moves cameras, intrinsics and kept targets.
   Eigen::VectorXd cameraStep(const Eigen::VectorXd& step) const;
 
  private:
   static constexpr int kShared = kPoseTangent + 1;
   using SharedJacobian = Eigen::Matrix<double, kCameraTangent, kShared>;
 
-  /// A stretch of the tail (extrinsics, time offset, intrinsics, directions) and its place among the states.
+  /// A stretch of the tail (extrinsics, time offset, intrinsics, kept targets) and its place among the states.
   struct Piece {
     Eigen::Index at, size, state;
   };

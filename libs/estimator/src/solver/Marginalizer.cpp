@@ -2,9 +2,10 @@
 #include "solver/Marginalizer.h"
 
 #include <Eigen/Cholesky>
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
+
+#include "lintel/geometry/SmallMatrices.h"
 
 namespace lintel {
 
@@ -14,10 +15,9 @@ constexpr double kNoInformation = 1e-8;  // eigenvalues below are taken as zero,
 
 /// Symmetric pseudo-inverse; directions with less information than kNoInformation are left out.
 Eigen::MatrixXd pseudoInverse(const Eigen::MatrixXd& m) {
-  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(0.5 * (m + m.transpose()));
-  const Eigen::VectorXd inverse =
-      solver.eigenvalues().unaryExpr([](double v) { return v > kNoInformation ? 1.0 / v : 0.0; });
-  return solver.eigenvectors() * inverse.asDiagonal() * solver.eigenvectors().transpose();
+  const auto eigen = symmetricEigen<Eigen::Dynamic>(0.5 * (m + m.transpose()));
+  const Eigen::VectorXd inverse = eigen.values.unaryExpr([](double v) { return v > kNoInformation ? 1.0 / v : 0.0; });
+  return eigen.vectors * inverse.asDiagonal() * eigen.vectors.transpose();
 }
 
 /// H and b without rows [at, at + size), their information passed on to the others.
@@ -59,11 +59,15 @@ WindowPrior priorOf(std::vector<BlockKey> keys, std::vector<PriorBlock> blocks, 
 
 std::optional<WindowPrior> marginalise(SlidingWindow& window, const std::vector<Factor>& factors,
                                        const std::set<BlockKey>& dropped) {
-  ReducedSystem system(window, factors, dropped, {});
+  std::set<BlockKey> first = dropped;
+  for (const Factor& factor : factors)
+    for (const BlockKey& key : factor.blocks)
+      if (isLandmark(key)) first.insert(key);
+  ReducedSystem system(window, factors, first, {});
   system.linearise();
   NormalEquations eq = system.eliminate();
   std::size_t kept = 0;
-  while (kept < eq.blocks.size() && dropped.count(eq.blocks[kept]) > 0) ++kept;
+  while (kept < eq.blocks.size() && first.count(eq.blocks[kept]) > 0) ++kept;
   const Eigen::Index start = eq.offsets[kept], size = eq.H.rows() - start;
   if (size == 0) return std::nullopt;
   eliminate(eq, 0, start);

@@ -2,6 +2,7 @@
 #include "solver/ReducedSystem.h"
 
 #include <algorithm>
+#include <cmath>
 #include <tuple>
 
 #include "solver/SparseCholesky.h"
@@ -35,14 +36,12 @@ bool comesBefore(const BlockKey& a, const BlockKey& b) {
 ReducedSystem::ReducedSystem(SlidingWindow& window, const std::vector<Factor>& factors, const std::set<BlockKey>& first,
                              const std::set<BlockKey>& frozen)
     : window_(window), landmarks_(window, factors, placeCameras(window)) {
-  for (const Factor& factor : factors)
-    if (!LandmarkSystem::isVision(factor)) others_.push_back(factor);
   placeStates(first, frozen);
 }
 
 void ReducedSystem::placeStates(const std::set<BlockKey>& first, const std::set<BlockKey>& frozen) {
   std::set<BlockKey> all = landmarks_.states(window_);
-  for (const Factor& factor : others_) all.insert(factor.blocks.begin(), factor.blocks.end());
+  for (const Factor* factor : landmarks_.others()) all.insert(factor->blocks.begin(), factor->blocks.end());
   for (const BlockKey& key : frozen) all.erase(key);
   states_.blocks.assign(all.begin(), all.end());
   std::sort(states_.blocks.begin(), states_.blocks.end(), comesBefore);
@@ -73,12 +72,13 @@ double ReducedSystem::cost() const {
   double sum = landmarks_.cost(views(false));
   std::vector<const double*> blocks;
   Eigen::VectorXd r;
-  for (const Factor& factor : others_) {
+  double weight;
+  for (const Factor* factor : landmarks_.others()) {
     blocks.clear();
-    for (const BlockKey& key : factor.blocks) blocks.push_back(window_.block(key));
-    r.resize(factor.cost->num_residuals());
-    factor.cost->Evaluate(blocks.data(), r.data(), nullptr);
-    sum += 0.5 * r.squaredNorm();
+    for (const BlockKey& key : factor->blocks) blocks.push_back(window_.block(key));
+    r.resize(factor->cost->num_residuals());
+    factor->cost->Evaluate(blocks.data(), r.data(), nullptr);
+    sum += robustCost(factor->loss, r.squaredNorm(), weight);
   }
   return sum;
 }
@@ -88,9 +88,9 @@ double ReducedSystem::linearise() {
   states_.H.setZero(n, n);
   states_.b.setZero(n);
   double sum = 0;
-  for (const Factor& factor : others_) {
-    const auto* prior = dynamic_cast<const PriorFactor*>(factor.cost);
-    sum += prior ? addPrior(factor, *prior) : addOther(factor);
+  for (const Factor* factor : landmarks_.others()) {
+    const auto* prior = dynamic_cast<const PriorFactor*>(factor->cost);
+    sum += prior && !factor->loss ? addPrior(*factor, *prior) : addOther(*factor);
   }
   views_ = views(true);
   return sum + landmarks_.linearise(views_);
@@ -121,8 +121,14 @@ double ReducedSystem::addOther(const Factor& factor) {
     manifold.PlusJacobian(blocks[i], plus.data());
     of_block = ambient[i].lazyProduct(plus);
   }
+  double weight;
+  const double cost = robustCost(factor.loss, r.squaredNorm(), weight);
+  if (factor.loss) {
+    J *= std::sqrt(weight);
+    r *= std::sqrt(weight);
+  }
   addInformation(to, J.transpose() * J, J.transpose() * r);
-  return 0.5 * r.squaredNorm();
+  return cost;
 }
 
 /// A prior's information does not change, only the tangent spaces turn: H = C' A'A C.
@@ -176,9 +182,7 @@ CameraChain ReducedSystem::chain() const {
   for (const WindowFrame& frame : window_.frames) places.poses.push_back(offsetOf({BlockKey::kPose, frame.id}));
   places.extrinsics = offsetOf({BlockKey::kExtrinsics, 0});
   places.correction = offsetOf({BlockKey::kCorrection, 0});
-  places.directions.resize(layout.directions.size());
-  for (const auto& [id, place] : layout.directions)
-    places.directions[static_cast<std::size_t>(place)] = offsetOf({BlockKey::kDirection, id});
+  for (const BlockKey& key : layout.kept) places.kept.push_back(offsetOf(key));
   return {layout, views_, places};
 }
 

@@ -8,8 +8,8 @@
 
 #include "lintel/estimator/SlidingWindow.h"
 #include "solver/CameraChain.h"
+#include "solver/Factor.h"
 #include "solver/LandmarkSystem.h"
-#include "window/WindowFactors.h"
 
 namespace lintel {
 
@@ -26,10 +26,11 @@ struct NormalEquations {
   Eigen::VectorXd b;
 };
 
-/// The normal equations of a window's residuals with all points and lines eliminated (Schur complement [Triggs2000]).
+/// The normal equations of a window's residuals with points and lines eliminated (Schur complement [Triggs2000]), but
+/// for those that stay among the states (LandmarkSystem says which).
 ///
 /// The residuals of an image share its camera. They are summed in the tangent spaces of the cameras (six numbers each,
-/// plus the intrinsics and the shared directions), landmarks are eliminated there, and one chain rule for each camera
+/// plus the intrinsics and the targets that stay), landmarks are eliminated there, and one chain rule for each camera
 /// carries the sum over to poses, extrinsics and time offset. Robust losses count as weights.
 class ReducedSystem {
  public:
@@ -52,8 +53,9 @@ class ReducedSystem {
   /// By how much the linear model says that the cost falls with the last solution.
   double modelDecrease() const { return model_decrease_; }
 
-  /// How far the last solution moves the states (all blocks but landmarks), in their standard deviations: Mahalanobis
-  /// distance in the damped system, so that a move by m shifts no combination of states by more than m sigma.
+  /// How far the last solution moves the states (all blocks but eliminated landmarks), in their standard deviations:
+  /// Mahalanobis distance in the damped system, so that a move by m shifts no combination of states by more than m
+  /// sigma.
   double statesMove() const { return states_move_; }
 
   /// Moves the window's blocks by the last solution; takes that back.
@@ -78,7 +80,6 @@ class ReducedSystem {
   void addInformation(const Placement& place, const Eigen::MatrixXd& H, const Eigen::VectorXd& b);
 
   SlidingWindow& window_;
-  std::vector<Factor> others_;  // without points and lines
   LandmarkSystem landmarks_;
   NormalEquations states_;         // of the others alone, lower triangle
   std::vector<CameraView> views_;  // at the last linearisation

@@ -51,7 +51,6 @@ SolveSummary solveWindow(SlidingWindow& window, const std::vector<Factor>& facto
     if (summary.iterations < limits.max_iterations) system.linearise();
   }
   summary.final_cost = cost;
-  summary.usable = std::isfinite(cost);
   return summary;
 }
 

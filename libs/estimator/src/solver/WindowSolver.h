@@ -3,14 +3,13 @@
 
 #include "lintel/estimator/EstimatorParams.h"
 #include "lintel/estimator/SlidingWindow.h"
-#include "window/WindowFactors.h"
+#include "solver/Factor.h"
 
 namespace lintel {
 
 struct SolveSummary {
   int iterations = 0;
   double initial_cost = 0, final_cost = 0;
-  bool usable = false;
 };
 
 /// When a solve has had enough.

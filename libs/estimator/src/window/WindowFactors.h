@@ -3,7 +3,6 @@
 
 #include <ceres/loss_function.h>
 
-#include <array>
 #include <deque>
 #include <map>
 #include <memory>
@@ -11,29 +10,23 @@
 
 #include "lintel/estimator/EstimatorParams.h"
 #include "lintel/estimator/SlidingWindow.h"
-#include "lintel/factors/ImuFactor.h"
 #include "lintel/factors/LineFactor.h"
 #include "lintel/factors/PointFactor.h"
-#include "lintel/factors/StructuralFactor.h"
-#include "lintel/factors/VanishingFactor.h"
+#include "solver/Factor.h"
 
 namespace lintel {
 
-/// A residual of the window: its cost, its loss (null: none) and the blocks it depends on.
-struct Factor {
-  const ceres::CostFunction* cost = nullptr;
-  const ceres::LossFunction* loss = nullptr;
-  std::vector<BlockKey> blocks;
-};
-
-/// The manifold of a kind of block; shared, stateless.
-const std::shared_ptr<const StateManifold>& manifoldOf(BlockKey::Kind kind);
-
-/// Makes the residuals of a window and owns them. Solver and marginaliser ask for what they need: the same residual is
-/// built in one place only.
+/// Makes the residuals of a window and owns them: in one place for solver, marginaliser and covariances.
 class WindowFactors {
  public:
   WindowFactors(const SlidingWindow& window, const FactorParams& params);
+
+  /// All that is known: priors, gauge, calibration, measurements.
+  void addAll(const EstimatorParams& params, const Pose& T_b_c_calibrated);
+
+  /// What was measured: IMU, rest, points, lines. These go into a prior when a frame leaves that they touch; a new kind
+  /// of residual is added here.
+  void addMeasurements(const EstimatorParams& params);
 
   void addPriors();
   void addCalibrationPriors(const CalibrationParams& params, const Pose& T_b_c_calibrated);
@@ -45,21 +38,19 @@ class WindowFactors {
   void addPoints();
   void addLines(const DegeneracyParams& degeneracy);
 
-  /// Only these: residuals between the first frame and others, for marginalising it.
-  void addImuAfter(FrameId frame);
-  void addRestOf(const WindowFrame& frame, double velocity_sigma);  ///< nothing unless it is at rest
-  void addPoint(const PointTrack& track);
-  void addLine(const LineTrack& track,
-               const DegeneracyParams& degeneracy);  ///< and what ties it to its group, if it has one
-  void addSightings(const LineTrack& track);         ///< without what ties it
+  /// What a sighting says about the direction of the line's group alone.
   void addVanishing(const LineTrack& track, const LineSighting& sighting, const DegeneracyParams& degeneracy);
-  void add(std::unique_ptr<ceres::CostFunction> cost, std::vector<BlockKey> blocks);
+
+  /// Any residual. `loss` must outlive the factors.
+  void add(std::unique_ptr<ceres::CostFunction> cost, std::vector<BlockKey> blocks,
+           const ceres::LossFunction* loss = nullptr);
 
   const std::vector<Factor>& factors() const { return factors_; }
 
  private:
+  void addPoint(const PointTrack& track);
+  void addLine(const LineTrack& track, const DegeneracyParams& degeneracy);
   void setStructuralLoss(const DegeneracyParams& degeneracy);
-  void addImu(const WindowFrame& before, const WindowFrame& frame);
 
   const FrameMotion& motionOf(FrameId id) const { return motions_.at(id); }
 

@@ -3,8 +3,8 @@
 
 #include <algorithm>
 
-#include "landmarks/LineDegeneracy.h"
 #include "solver/Marginalizer.h"
+#include "window/WindowFactors.h"
 
 namespace lintel {
 
@@ -28,43 +28,61 @@ void marginaliseWith(SlidingWindow& window, std::vector<Factor> factors, const s
   if (auto prior = marginalise(window, factors, dropped)) window.priors.push_back(std::move(*prior));
 }
 
+/// The blocks that leave with a frame: its states, and the points and lines that its image sees.
+std::set<BlockKey> leavingWith(const WindowFrame& frame, const std::vector<Factor>& factors) {
+  const BlockKey pose{BlockKey::kPose, frame.id};
+  std::set<BlockKey> leaving{pose, {BlockKey::kMotion, frame.id}};
+  for (const Factor& factor : factors)
+    if (factor.blocks.front() == pose && isLandmark(factor.blocks.back()) && isImageFactor(factor))
+      leaving.insert(factor.blocks.back());
+  return leaving;
+}
+
+/// Whether a prior may hold a block for as long as the window lasts. Points and lines leave with their tracks, and
+/// shared directions stay out of priors: which lines share one is decided anew with every frame.
+bool outlastsTracks(const BlockKey& key) { return !isLandmark(key) && key.kind != BlockKey::kDirection; }
+
+/// The factors that become part of the prior: those that touch a block that leaves, if a prior may hold all others.
+std::vector<Factor> goingWith(const std::set<BlockKey>& leaving, const std::vector<Factor>& factors) {
+  std::vector<Factor> result;
+  const auto leaves = [&](const BlockKey& key) { return leaving.count(key) > 0; };
+  for (const Factor& factor : factors)
+    if (std::any_of(factor.blocks.begin(), factor.blocks.end(), leaves) &&
+        std::all_of(factor.blocks.begin(), factor.blocks.end(),
+                    [&](const BlockKey& key) { return outlastsTracks(key) || leaves(key); }))
+      result.push_back(factor);
+  return result;
+}
+
+/// Sightings that have been used: a track that goes on keeps only the newest, so that nothing counts twice. (The oldest
+/// goes with its frame.)
+template <class Tracks>
+void consumeSightings(Tracks& tracks, BlockKey::Kind kind, const std::set<BlockKey>& dropped, FrameId newest) {
+  for (auto& [id, track] : tracks)
+    if (dropped.count({kind, id}) && track.sightings.back().frame == newest && track.sightings.size() > 2) {
+      track.former.insert(track.former.end(), track.sightings.begin() + 1, track.sightings.end() - 1);
+      track.sightings.erase(track.sightings.begin() + 1, track.sightings.end() - 1);
+    }
+}
+
 }  // namespace
 
-void marginaliseOldest(SlidingWindow& window, const EstimatorParams& params) {
-  const WindowFrame& oldest = window.frames.front();
-  std::set<BlockKey> dropped{{BlockKey::kPose, oldest.id}, {BlockKey::kMotion, oldest.id}};
-  WindowFactors factors(window, params.factors);
-  factors.addImuAfter(oldest.id);
-  factors.addRestOf(oldest, params.rest_velocity_sigma);
-  const FrameId newest = window.frames.back().id;
-  for (const auto& [id, track] : window.points)
-    if (track.triangulated && track.sightings.size() > 1 && track.sightings.front().frame == oldest.id) {
-      factors.addPoint(track);
-      dropped.insert({BlockKey::kPoint, id});
-    }
-  for (const auto& [id, track] : window.lines)
-    if (entersProblem(track, params.degeneracy) && !track.sightings.empty() &&
-        track.sightings.front().frame == oldest.id) {
-      if (!track.placed || track.sightings.size() < 2) continue;  // shared directions stay out of the prior
-      factors.addSightings(track);
-      dropped.insert({BlockKey::kLine, id});
-    }
-  marginaliseWith(window, factors.factors(), takePriors(window, dropped), dropped);
-  // Their sightings have been used: a track that goes on keeps only the newest, so that nothing counts twice.
-  // (The oldest goes with its frame.)
-  const auto consume = [&](auto& tracks, BlockKey::Kind kind) {
-    for (auto& [id, track] : tracks)
-      if (dropped.count({kind, id}) && track.sightings.back().frame == newest && track.sightings.size() > 2) {
-        track.former.insert(track.former.end(), track.sightings.begin() + 1, track.sightings.end() - 1);
-        track.sightings.erase(track.sightings.begin() + 1, track.sightings.end() - 1);
-      }
-  };
+void marginaliseOldest(SlidingWindow& window, const std::vector<Factor>& measurements) {
+  const std::set<BlockKey> leaving = leavingWith(window.frames.front(), measurements);
+  marginaliseWith(window, goingWith(leaving, measurements), takePriors(window, leaving), leaving);
   for (auto& [id, track] : window.lines)
-    if (dropped.count({BlockKey::kLine, id}) && track.verdict == LineVerdict::kGood &&
+    if (leaving.count({BlockKey::kLine, id}) && track.verdict == LineVerdict::kGood &&
         (!track.best || track.sigma_direction_rad < track.best->sigma_direction_rad))
       track.best = KnownLine{track.line, track.origin_w, track.sigma_direction_rad, track.sigma_distance_m};
-  consume(window.points, BlockKey::kPoint);
-  consume(window.lines, BlockKey::kLine);
+  const FrameId newest = window.frames.back().id;
+  consumeSightings(window.points, BlockKey::kPoint, leaving, newest);
+  consumeSightings(window.lines, BlockKey::kLine, leaving, newest);
+}
+
+void marginaliseOldest(SlidingWindow& window, const EstimatorParams& params) {
+  WindowFactors factors(window, params.factors);
+  factors.addMeasurements(params);
+  marginaliseOldest(window, factors.factors());
 }
 
 void marginaliseSecondNewest(SlidingWindow& window) {

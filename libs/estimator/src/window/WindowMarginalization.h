@@ -1,15 +1,22 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <vector>
+
 #include "lintel/estimator/EstimatorParams.h"
 #include "lintel/estimator/SlidingWindow.h"
+#include "solver/Factor.h"
 
 namespace lintel {
 
 /// Two-way marginalisation [Qin2018]: which residuals go with a frame that leaves.
 
-/// The oldest frame with the points it hosts, the lines it sees, its IMU and the priors on it become a prior.
-/// Leaves the frame itself in the window (removeFrame follows).
+/// The oldest frame leaves with the points and lines that it sees. Those of the window's `measurements` that touch what
+/// leaves become a prior, with the priors on it; but not those that also touch a point or line that stays, or a shared
+/// direction. Leaves the frame itself in the window (removeFrame follows).
+void marginaliseOldest(SlidingWindow& window, const std::vector<Factor>& measurements);
+
+/// The same with the measurements that WindowFactors makes.
 void marginaliseOldest(SlidingWindow& window, const EstimatorParams& params);
 
 /// The second-newest frame is dropped with its images; only what priors knew about it is kept. Its IMU is joined to the

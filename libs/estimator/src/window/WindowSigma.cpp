@@ -13,13 +13,7 @@ namespace {
 
 NormalEquations informationOf(SlidingWindow& window, const EstimatorParams& params, const Pose& T_b_c_calibrated) {
   WindowFactors factors(window, params.factors);
-  factors.addPriors();
-  factors.addGauge();
-  factors.addCalibrationPriors(params.calibration, T_b_c_calibrated);
-  factors.addImu();
-  factors.addRest(params.rest_velocity_sigma);
-  factors.addPoints();
-  factors.addLines(params.degeneracy);
+  factors.addAll(params, T_b_c_calibrated);
   ReducedSystem system(window, factors.factors(), {}, {});
   system.linearise();
   return system.eliminate();

@@ -11,6 +11,7 @@
 #include "TestWindow.h"
 #include "landmarks/PointTriangulation.h"
 #include "lintel/factors/PriorFactors.h"
+#include "window/WindowFactors.h"
 #include "window/WindowMarginalization.h"
 
 namespace lintel {

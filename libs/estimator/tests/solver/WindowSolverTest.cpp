@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 #include "DenseReference.h"
 #include "TestWindow.h"
 #include "landmarks/LineTriangulation.h"
@@ -48,7 +50,7 @@ TEST(WindowSolver, FindsTheMinimumThatCeresFinds) {
   const WindowFactors factors = everything(window), others = everything(reference);
   const SolveSummary summary = solveWindow(window, factors.factors(), kParams.calibration, {50});
   const double cost = solveWithCeres(reference, others.factors());
-  ASSERT_TRUE(summary.usable);
+  ASSERT_TRUE(std::isfinite(summary.final_cost));
   EXPECT_GT(summary.initial_cost, 2 * cost);
   EXPECT_LT(summary.final_cost, 1.01 * cost) << "it stops when a step brings less than a thousandth";
   for (std::size_t k = 0; k < window.frames.size(); ++k)

@@ -54,7 +54,7 @@ TEST(AdaptiveWeights, AFewResidualsSayNothing) {
   track.triangulated = true;
   const FactorParams params;
   WindowFactors factors(window, params);
-  factors.addPoint(track);
+  factors.addPoints();
   ASSERT_EQ(factors.factors().size(), 2u);
   const ResidualScales scales = residualScales(window, factors.factors());
   EXPECT_EQ(scales.points, 1);

@@ -10,10 +10,6 @@ namespace lintel {
 
 constexpr int kCameraTangent = 6, kIntrinsicsSize = 6;
 
-/// Jacobians of two image residuals with respect to the camera's pose and to its intrinsics fx fy cx cy k1 k2.
-using CameraJacobian = Eigen::Matrix<double, 2, kCameraTangent>;
-using IntrinsicsJacobian = Eigen::Matrix<double, 2, kIntrinsicsSize>;
-
 /// Where the camera was when an image was taken, and how that hangs on the states: what all residuals of an image have
 /// in common. Tangent of the camera's pose: p_w_c += dp, R_w_c <- R_w_c Exp(dtheta).
 ///
@@ -27,10 +23,6 @@ struct CameraView {
   /// From blocks as the factors get them. The derivatives are only set when they are asked for.
   CameraView(const double* pose, const double* extrinsics, const double* correction, const FrameMotion& motion,
              bool derivatives);
-
-  /// Writes a residual's Jacobians as Ceres wants them; null pointers are skipped.
-  void writeJacobians(const double* pose, const double* extrinsics, const CameraJacobian& d_camera,
-                      const IntrinsicsJacobian& d_intrinsics, double** jacobians) const;
 };
 
 }  // namespace lintel

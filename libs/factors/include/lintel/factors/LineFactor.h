@@ -1,11 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <ceres/sized_cost_function.h>
-
-#include "lintel/factors/CameraView.h"
-#include "lintel/factors/FrameMotion.h"
-#include "lintel/factors/StateBlocks.h"
+#include "lintel/factors/ImageFactor.h"
 
 namespace lintel {
 
@@ -20,14 +16,6 @@ struct NormalisedObservation {
   }
 };
 
-/// A line residual at some states.
-struct LineLinearisation {
-  Eigen::Vector2d residual;
-  CameraJacobian d_camera;
-  IntrinsicsJacobian d_intrinsics;
-  Eigen::Matrix<double, 2, kLineTangent> d_line;  ///< tangent
-};
-
 /// Distances of the two observed end points to the projected infinite line, on the normalised plane
 /// ([Lim2021] line residual, [Bartoli2005]):
 ///
@@ -36,21 +24,16 @@ struct LineLinearisation {
 ///
 /// `weight` = focal / sigma_px. Blocks: pose (T_w_b), extrinsics (T_b_c), correction, line. A constant origin near the
 /// line keeps phi well conditioned far from the world's origin.
-class LineFactor final : public ceres::SizedCostFunction<2, kPoseSize, kPoseSize, kCorrectionSize, kLineSize> {
+class LineFactor final : public ImageFactor<LineTarget> {
  public:
   LineFactor(const NormalisedObservation& start, const NormalisedObservation& end, const FrameMotion& motion,
              const Eigen::Vector3d& origin_w, double weight)
-      : start_(start), end_(end), motion_(motion), origin_w_(origin_w), weight_(weight) {}
-  bool Evaluate(double const* const* parameters, double* residuals, double** jacobians) const override;
-
-  /// The residual seen from a camera that is known already; Jacobians only when asked for.
+      : ImageFactor(motion), start_(start), end_(end), origin_w_(origin_w), weight_(weight) {}
   void linearise(const CameraView& view, const double* correction, const double* line, bool jacobians,
-                 LineLinearisation& out) const;
-  const FrameMotion& motion() const { return motion_; }
+                 LineLinearisation& out) const override;
 
  private:
   NormalisedObservation start_, end_;
-  FrameMotion motion_;
   Eigen::Vector3d origin_w_;
   double weight_;
 };

@@ -1,22 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <ceres/sized_cost_function.h>
-
-#include "lintel/factors/CameraView.h"
-#include "lintel/factors/FrameMotion.h"
-#include "lintel/factors/StateBlocks.h"
+#include "lintel/factors/ImageFactor.h"
 #include "lintel/geometry/PinholeRadtan.h"
 
 namespace lintel {
-
-/// A point residual at some states.
-struct PointLinearisation {
-  Eigen::Vector2d residual;
-  CameraJacobian d_camera;
-  IntrinsicsJacobian d_intrinsics;
-  Eigen::Matrix<double, 2, kPointSize> d_point;  ///< ambient
-};
 
 /// Reprojection of a homogeneous point (X, w), X / w relative to the constant world point `origin_w`, in raw pixels:
 ///
@@ -25,22 +13,17 @@ struct PointLinearisation {
 /// Every sighting has its residual, the first one too. (Inverse depth along a ray fixed by the first sighting takes
 /// that sighting as exact: its noise then biases depth, and with it focal length and extrinsics.) Points at infinity
 /// are regular: w = 0. Blocks: pose (T_w_b), extrinsics (T_b_c), correction, point.
-class PointFactor final : public ceres::SizedCostFunction<2, kPoseSize, kPoseSize, kCorrectionSize, kPointSize> {
+class PointFactor final : public ImageFactor<PointTarget> {
  public:
   PointFactor(const Eigen::Vector2d& px, const PinholeRadtan& camera, const FrameMotion& motion,
               const Eigen::Vector3d& origin_w, double sigma_px)
-      : px_(px), camera_(camera), motion_(motion), origin_w_(origin_w), weight_(1 / sigma_px) {}
-  bool Evaluate(double const* const* parameters, double* residuals, double** jacobians) const override;
-
-  /// The residual seen from a camera that is known already; Jacobians only when asked for.
+      : ImageFactor(motion), px_(px), camera_(camera), origin_w_(origin_w), weight_(1 / sigma_px) {}
   void linearise(const CameraView& view, const double* correction, const double* point, bool jacobians,
-                 PointLinearisation& out) const;
-  const FrameMotion& motion() const { return motion_; }
+                 PointLinearisation& out) const override;
 
  private:
   Eigen::Vector2d px_;
   PinholeRadtan camera_;
-  FrameMotion motion_;
   Eigen::Vector3d origin_w_;
   double weight_;
 };

@@ -7,13 +7,17 @@
 
 namespace lintel {
 
+/// What ties a line to a direction that others share. The window's solver eliminates such a line like one that only
+/// images see, as long as one of these is on it. Blocks: line, direction.
+using LineDirectionFactor = ceres::SizedCostFunction<3, kLineSize, kDirectionSize>;
+
 /// Ties a line to the direction that its group shares ([Lim2021] structural constraint, in O(n) for n lines):
 ///
 ///   r = weight d_line x d_group,   d_line = U e2,   |r| = weight |sin angle|
 ///
 /// Smooth where they are parallel, and zero too where they are opposite: a line has no sign. `weight` = 1 / sigma_rad.
 /// Blocks: line, direction.
-class SharedDirectionFactor final : public ceres::SizedCostFunction<3, kLineSize, kDirectionSize> {
+class SharedDirectionFactor final : public LineDirectionFactor {
  public:
   explicit SharedDirectionFactor(double weight) : weight_(weight) {}
   bool Evaluate(double const* const* parameters, double* residuals, double** jacobians) const override;

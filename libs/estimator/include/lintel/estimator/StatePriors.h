@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <memory>
+
+#include "lintel/estimator/EstimatorParams.h"
+#include "lintel/factors/PriorFactors.h"
+#include "lintel/factors/StateBlocks.h"
+#include "lintel/geometry/Pose.h"
+
+namespace lintel {
+
+// What is known about single states without any measurement of them, for the sliding window and for the batch
+// refinement alike. Each prior is over one block.
+
+/// Ties position and yaw of a pose block to what they are: the four directions that no measurement sees.
+std::unique_ptr<PriorFactor> makeGaugePrior(const PoseBlock& pose);
+
+/// The extrinsics T_b_c, to within their sigmas about the calibrated ones; held where they are not refined.
+std::unique_ptr<PriorFactor> makeExtrinsicsPrior(const CalibrationParams& params, const Pose& T_b_c_calibrated);
+
+/// The correction of intrinsics and time offset, about zero; held in the parts that are not refined.
+std::unique_ptr<PriorFactor> makeCorrectionPrior(const CalibrationParams& params);
+
+/// Zero velocity of a body at rest, to within `velocity_sigma` [m/s]; a motion block.
+std::unique_ptr<PriorFactor> makeRestPrior(double velocity_sigma);
+
+/// The biases of a run's first state about zero; a motion block.
+std::unique_ptr<PriorFactor> makeBiasPrior(const InitializerParams& params);
+
+}  // namespace lintel

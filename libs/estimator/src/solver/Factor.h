@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <ceres/cost_function.h>
+#include <ceres/loss_function.h>
+
+#include <memory>
+#include <type_traits>
+#include <vector>
+
+#include "lintel/estimator/SlidingWindow.h"
+#include "lintel/factors/ImageFactor.h"
+#include "lintel/factors/Manifolds.h"
+
+namespace lintel {
+
+/// A residual of the window: its cost, its loss (null: none) and the blocks it depends on.
+struct Factor {
+  const ceres::CostFunction* cost = nullptr;
+  const ceres::LossFunction* loss = nullptr;
+  std::vector<BlockKey> blocks;
+};
+
+/// The manifold of a kind of block; shared, stateless.
+const std::shared_ptr<const StateManifold>& manifoldOf(BlockKey::Kind kind);
+
+inline bool isLandmark(const BlockKey& key) { return key.kind == BlockKey::kPoint || key.kind == BlockKey::kLine; }
+
+/// The kind of block that an image's target is.
+template <class Target>
+constexpr BlockKey::Kind kKindOf = std::is_same_v<Target, PointTarget>  ? BlockKey::kPoint
+                                   : std::is_same_v<Target, LineTarget> ? BlockKey::kLine
+                                                                        : BlockKey::kDirection;
+
+/// The factor as a residual of an image that sees such a target; null when it is none.
+template <class Target>
+const ImageFactor<Target>* imageFactorOf(const Factor& factor) {
+  if (factor.blocks.size() != 4 || factor.blocks.back().kind != kKindOf<Target>) return nullptr;
+  return dynamic_cast<const ImageFactor<Target>*>(factor.cost);
+}
+
+/// Whether the factor is a residual of an image.
+inline bool isImageFactor(const Factor& factor) {
+  return imageFactorOf<PointTarget>(factor) || imageFactorOf<LineTarget>(factor) ||
+         imageFactorOf<DirectionTarget>(factor);
+}
+
+}  // namespace lintel

@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "solver/LandmarkBlock.h"
+
+namespace lintel {
+
+template <class Target>
+double KeptSighting<Target>::cost(const std::vector<CameraView>& views, const double* correction,
+                                  const CameraLayout& layout) const {
+  ImageLinearisation<Target> l;
+  factor->linearise(views[static_cast<std::size_t>(camera)], correction, layout.block(target), false, l);
+  double weight;
+  return robustCost(loss, l.residual.squaredNorm(), weight);
+}
+
+template <class Target>
+double KeptSighting<Target>::linearise(const std::vector<CameraView>& views, const double* correction,
+                                       const CameraLayout& layout, CameraEquations& eq) const {
+  constexpr int T = Target::kTangent, kTargetAt = kCameraTangent + kIntrinsicsSize, N = kTargetAt + T;
+  ImageLinearisation<Target> l;
+  factor->linearise(views[static_cast<std::size_t>(camera)], correction, layout.block(target), true, l);
+  double weight;
+  const double cost = robustCost(loss, l.residual.squaredNorm(), weight);
+
+  Eigen::Matrix<double, Target::kRows, N> J;
+  J.template leftCols<kCameraTangent>() = l.d_camera;
+  J.template middleCols<kIntrinsicsSize>(kCameraTangent) = l.d_intrinsics;
+  if constexpr (Target::kColumns == T) {
+    J.template rightCols<T>() = l.d_target;
+  } else {
+    RowMajorMatrix plus(Target::kSize, T);
+    manifoldOf(kKindOf<Target>)->PlusJacobian(layout.block(target), plus.data());
+    const Eigen::Matrix<double, Target::kRows, T> d_tangent = l.d_target * plus;
+    J.template rightCols<T>() = d_tangent;
+  }
+  const Eigen::Matrix<double, N, Target::kRows> weighted = weight * J.transpose();
+  const Eigen::Matrix<double, N, N> H = weighted.lazyProduct(J);
+  const Eigen::Matrix<double, N, 1> b = J.transpose().lazyProduct(weight * l.residual);
+  const Eigen::Index from[] = {0, kCameraTangent, kTargetAt}, sizes[] = {kCameraTangent, kIntrinsicsSize, T},
+                     to[] = {layout.camera(camera), layout.intrinsics(), layout.target(target)};
+  for (int i = 0; i < 3; ++i) {
+    eq.b.segment(to[i], sizes[i]) += b.segment(from[i], sizes[i]);
+    for (int j = 0; j <= i; ++j)
+      eq.H.block(to[i], to[j], sizes[i], sizes[j]) += H.block(from[i], from[j], sizes[i], sizes[j]);
+  }
+  return cost;
+}
+
+template struct KeptSighting<PointTarget>;
+template struct KeptSighting<LineTarget>;
+template struct KeptSighting<DirectionTarget>;
+
+}  // namespace lintel

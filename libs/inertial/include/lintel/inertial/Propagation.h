@@ -1,0 +1,22 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <Eigen/Core>
+
+#include "lintel/geometry/Pose.h"
+#include "lintel/inertial/Preintegration.h"
+
+namespace lintel {
+
+/// Pose and velocity of the body in the world, and the biases of its IMU.
+struct InertialState {
+  Pose T_w_b;
+  Eigen::Vector3d v_w_b = Eigen::Vector3d::Zero();  ///< [m/s]
+  ImuBias bias;
+};
+
+/// The state at the end of a pre-integrated interval that starts in state `from`, by the samples alone
+/// [Forster2017, eq. 26]; the biases stay.
+InertialState propagated(const InertialState& from, const Preintegration& imu);
+
+}  // namespace lintel
