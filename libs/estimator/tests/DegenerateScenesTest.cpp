@@ -8,6 +8,7 @@
 #include <map>
 
 #include "TestWindow.h"
+#include "lintel/core/Quantiles.h"
 #include "lintel/estimator/Estimator.h"
 #include "lintel/geometry/Alignment.h"
 

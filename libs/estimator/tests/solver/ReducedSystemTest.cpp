@@ -18,8 +18,6 @@ using namespace test;
 
 const EstimatorParams kParams;
 
-bool isLandmark(const BlockKey& key) { return key.kind == BlockKey::kPoint || key.kind == BlockKey::kLine; }
-
 /// A window off its optimum with points, lines, and lines tied to a shared direction.
 class ReducedSystemTest : public testing::Test {
  protected:
