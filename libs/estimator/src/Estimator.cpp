@@ -113,7 +113,7 @@ bool Estimator::Impl::appendImu(const FrameTracks& tracks, const ImuBatch& imu) 
   const std::int64_t covered_from = pending_imu_.empty() ? newest_t_ns_ : pending_imu_.back().t_ns;
   for (const ImuSample& sample : imu)
     if (pending_imu_.empty() || sample.t_ns > pending_imu_.back().t_ns) pending_imu_.push_back(sample);
-  constexpr std::int64_t kSlack_ns = 20'000'000;
+  constexpr std::int64_t kSlack_ns = 20'000'000;  // some IMU samples: clocks differ, and samples get lost
   return !imu.empty() && imu.front().t_ns <= covered_from + kSlack_ns && imu.back().t_ns >= tracks.t_ns - kSlack_ns;
 }
 

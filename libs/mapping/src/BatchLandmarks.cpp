@@ -15,7 +15,7 @@ namespace {
 class UnitLength final : public ceres::SizedCostFunction<2, kPointSize> {
  public:
   bool Evaluate(double const* const* parameters, double* residuals, double** jacobians) const override {
-    constexpr double kWeight = 100;
+    constexpr double kWeight = 100;  // holds the length to about a hundredth; no other residual depends on it
     const Eigen::Map<const PointBlock> x(parameters[0]);
     residuals[0] = kWeight * (x.squaredNorm() - 1);
     residuals[1] = 0;

@@ -127,7 +127,7 @@ bool startFromPlanes(const FitData& data, LineEstimate& line) {
 
 /// Moves the middle to where the views are, along the line. The median: one view at a grazing angle must not count.
 bool centre(const std::vector<FitView>& views, LineEstimate& line, double& distance_m) {
-  constexpr double kLeastSine2 = 1e-6;
+  constexpr double kLeastSine2 = 1e-6;  // of the angle between ray and line: 0.06 degrees
   std::vector<double> places, distances;
   for (const FitView& v : views) {
     const Eigen::Vector3d ray_w = (v.R_c_w.transpose() * (v.ends[0] + v.ends[1])).normalized();

@@ -11,7 +11,8 @@ namespace lintel {
 
 namespace {
 
-constexpr std::size_t kMostGroups = 12, kMostCandidates = 400;
+constexpr std::size_t kMostGroups = 12,
+                      kMostCandidates = 400;  // the longest lines: the search is quadratic
 
 /// Length counts, but not without limit: one long beam is no group.
 double weightOf(const MapLine& line) { return std::min(line.segment_w.length(), 3.0); }
@@ -116,12 +117,12 @@ void nameGroups(std::vector<MapGroup>& groups) {
 }  // namespace
 
 double sigmaOf(const MapGroup& group) {
-  constexpr double kLeast_rad = 0.005;
+  constexpr double kLeast_rad = 0.005;  // edges of buildings are not more parallel than that
   return std::max(kLeast_rad, group.spread_rad);
 }
 
 std::vector<bool> certainGroups(const LineMap& map) {
-  constexpr double kLeastShare = 0.10;
+  constexpr double kLeastShare = 0.10;  // of the map's length: a smaller group may be chance
   std::vector<double> lengths(map.groups.size(), 0.0);
   double total = 0;
   for (const MapLine& line : map.lines) {

@@ -18,7 +18,7 @@ namespace lintel {
 
 namespace {
 
-constexpr double kCell_m = 0.3;
+constexpr double kCell_m = 0.3;  // lines with places nearer than this are always compared
 constexpr double kApart =
     200;  // squared standard deviations between two estimates: farther apart they are not compared
 
@@ -72,7 +72,7 @@ class LineMerger {
   }
 
  private:
-  static constexpr double kCoverage = 0.2;
+  static constexpr double kCoverage = 0.2;  // share of the views that must see a stretch, as in the map
 
   Segment3 drawn(const LineRecord& line) const {
     if (!line.known) return {};
@@ -82,7 +82,7 @@ class LineMerger {
 
   std::vector<Candidate> candidates() const {
     SpatialIndex index(kCell_m);
-    constexpr int kMostSamples = 2000;
+    constexpr int kMostSamples = 2000;  // of runaway lines
     for (std::size_t i = 0; i < lines_.size(); ++i) {
       const double length = segments_[i].length();
       if (length <= 0) continue;
@@ -138,7 +138,7 @@ class LineMerger {
 
   /// Whether `b` is the only line that `a` can be the same as: other lines nearly as close are the same as `b`.
   bool isUnmistakable(std::size_t a, std::size_t b, double score) const {
-    constexpr double kRatio = 2;
+    constexpr double kRatio = 2;  // of the scores, as in the ratio test of descriptor matching
     return std::all_of(rivals_[a].begin(), rivals_[a].end(), [&](std::size_t rival) {
       const std::size_t c = merged_.rootOf(rival);
       double other = 0;

@@ -13,7 +13,7 @@ namespace lintel {
 
 namespace {
 
-constexpr double kCell_m = 0.1;
+constexpr double kCell_m = 0.1;  // points nearer than this are always compared
 
 struct Candidate {
   double distance_m = 0;

@@ -10,6 +10,7 @@ namespace lintel {
 
 namespace {
 
+// Pixels of any image: they are errors of the trackers of points and lines.
 constexpr double kOn_px = 1.5;       // from a view's segment; more is beside it
 constexpr double kBeyond_px = 5;     // its ends: corners are there
 constexpr int kLeastShared = 3;      // keyframes that saw both

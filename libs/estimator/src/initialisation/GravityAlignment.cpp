@@ -146,7 +146,7 @@ Vector6 solveWithGravityNorm(const Matrix6& A, const Vector6& b) {
 }
 
 GravityAlignment alignGravity(const SlidingWindow& window) {
-  constexpr double kWidth_rad = 0.004;
+  constexpr double kWidth_rad = 0.004;  // about two pixels of EuRoC's camera
   GravityAlignment result;
   const std::vector<Motion> motions = integrate(window);
   std::vector<PointSystem> points = collectPoints(window, motions);

@@ -32,7 +32,7 @@ double planeSigma(const SlidingWindow& window, const FactorParams& params, const
 }
 
 double epipoleAngle(const SlidingWindow& window, const LineTrack& track) {
-  constexpr double kLeastBaseline_m = 0.01;
+  constexpr double kLeastBaseline_m = 0.01;  // a shorter one has no direction: poses err by millimetres
   const LineSighting& newest = track.sightings.back();
   const Pose T_w_c = window.T_w_c(window.frame(newest.frame));
   const Eigen::Vector3d start = newest.start.corrected(window.correction.data()).homogeneous();

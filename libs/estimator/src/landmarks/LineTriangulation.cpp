@@ -169,7 +169,7 @@ bool triangulateLine(const SlidingWindow& window, const EstimatorParams& params,
   }
   // A line that is far from being determined is not worth refining: its cheap estimate says so already.
   updateLineUncertainty(window, params, track);
-  constexpr double kHopeless = 3;
+  constexpr double kHopeless = 3;  // times the limit: the cheap estimate is wrong by less
   if (track.sigma_direction_rad > kHopeless * params.degeneracy.max_sigma_direction_rad)
     return track.triangulated = true;
   refine(window, params.factors, track);

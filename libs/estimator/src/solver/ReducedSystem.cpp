@@ -17,7 +17,7 @@ std::map<FrameId, int> placeCameras(const SlidingWindow& window) {
   return places;
 }
 
-constexpr double kLeastDamping = 1e-6;
+constexpr double kLeastDamping = 1e-6;  // times the damping: the least that is added to a diagonal
 
 /// Where the tangent space is the space itself, and its Jacobians are identities.
 bool isVectorSpace(const StateManifold& manifold) { return manifold.AmbientSize() == manifold.TangentSize(); }

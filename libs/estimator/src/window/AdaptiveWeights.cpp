@@ -11,10 +11,10 @@ namespace lintel {
 
 namespace {
 
-constexpr std::size_t kLeastResiduals = 30;
-constexpr double kMedianOfNorm = 1.1774;  // of two standard normal residuals (Rayleigh)
-constexpr double kShare = 0.1;            // of a correction that one window brings, in logarithms
-constexpr double kMostChange = 2;         // of the configured sigma
+constexpr std::size_t kLeastResiduals = 30;  // the median of fewer is not reliable
+constexpr double kMedianOfNorm = 1.1774;     // of two standard normal residuals (Rayleigh)
+constexpr double kShare = 0.1;               // of a correction that one window brings, in logarithms
+constexpr double kMostChange = 2;            // of the configured sigma
 
 class Collector {
  public:

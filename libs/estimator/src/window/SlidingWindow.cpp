@@ -77,7 +77,7 @@ void SlidingWindow::removeFrame(FrameId id, bool keyframe) {
 }
 
 Eigen::Vector3d SlidingWindow::positionOf(const PointTrack& track) const {
-  constexpr double kLeast = 1e-6;
+  constexpr double kLeast = 1e-6;  // of the homogeneous coordinate: a point farther away is at infinity
   return track.origin_w + track.point.head<3>() / std::max(track.point[3], kLeast);
 }
 
