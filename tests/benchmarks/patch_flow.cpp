@@ -15,7 +15,7 @@
 #include <stdexcept>
 
 #include "../../libs/tracking/src/PatchFlow.h"
-#include "Medians.h"
+#include "lintel/core/Quantiles.h"
 #include "lintel/core/ThreadTime.h"
 
 namespace lintel {
@@ -96,11 +96,14 @@ void measure(const Job& job, const cv::Mat& from, const cv::Mat& to, const std::
   }
 }
 
+/// 0 without values.
+double quantileOf(std::vector<double> values, double q) { return values.empty() ? 0 : lowerQuantile(values, q); }
+
 void print(const char* name, const Measured& measured) {
   std::printf("  %-12s pyramid %.3f ms  flow %.3f ms  followed %.1f %%  error %.3f px (90 %%: %.3f)\n", name,
-              quantile(measured.pyramid_ms, 0.5), quantile(measured.flow_ms, 0.5),
+              quantileOf(measured.pyramid_ms, 0.5), quantileOf(measured.flow_ms, 0.5),
               100.0 * static_cast<double>(measured.followed) / static_cast<double>(measured.all),
-              quantile(measured.error_px, 0.5), quantile(measured.error_px, 0.9));
+              quantileOf(measured.error_px, 0.5), quantileOf(measured.error_px, 0.9));
 }
 
 int run(int argc, char** argv) {

@@ -19,7 +19,7 @@
 #include <stdexcept>
 
 #include "../../libs/sensing/src/GrayPng.h"
-#include "Medians.h"
+#include "lintel/core/Quantiles.h"
 #include "lintel/core/ThreadTime.h"
 
 namespace lintel {
@@ -83,7 +83,9 @@ int run(int argc, char** argv) {
     }
   }
   std::printf("%zu images, CPU time of one [ms], median (10 %% to 90 %%)\n", paths.size());
-  for (const Decoder& decoder : decoders) printSpread(decoder.name, decoder.ms);
+  for (Decoder& decoder : decoders)
+    std::printf("%-28s %8.3f (%.3f to %.3f)\n", decoder.name, lowerQuantile(decoder.ms, 0.5),
+                lowerQuantile(decoder.ms, 0.1), lowerQuantile(decoder.ms, 0.9));
   return 0;
 }
 

@@ -72,8 +72,8 @@ double medianDepth(const SlidingWindow& window) {
 }
 
 /// Gives a line the group's direction within its newest plane, and the depth of its ends where they show one.
-void join(const SlidingWindow& window, LineTrack& track, std::uint64_t group, const Eigen::Vector3d& d_w,
-          double depth) {
+void joinGroup(const SlidingWindow& window, LineTrack& track, std::uint64_t group, const Eigen::Vector3d& d_w,
+               double depth) {
   const LineSighting& newest = track.sightings.back();
   const Rays rays = raysOf(window, newest);
   const Pose T_w_c = window.T_w_c(window.frame(newest.frame));
@@ -91,8 +91,8 @@ void join(const SlidingWindow& window, LineTrack& track, std::uint64_t group, co
   track.sigma_direction_rad = kKnown_rad;
 }
 
-/// Whether a line knows its direction without its group; if so it takes that.
-bool standsAlone(const SlidingWindow& window, const EstimatorParams& params, LineTrack& track) {
+/// Whether the direction of a line is known without its group; if so the line takes that.
+bool isKnownWithoutGroup(const SlidingWindow& window, const EstimatorParams& params, LineTrack& track) {
   if (track.distance_known) return !track.degenerate();
   LineTrack own = track;
   own.group = 0;
@@ -102,24 +102,25 @@ bool standsAlone(const SlidingWindow& window, const EstimatorParams& params, Lin
   return true;
 }
 
-/// Gives members a state of their own once the shared direction makes their distance known [METHOD], and takes it away
-/// from those that have run off.
-void place(const SlidingWindow& window, const EstimatorParams& params, LineTrack& track, double depth) {
+/// Triangulates a member with the shared direction if its distance is not known or no longer fits its sightings.
+void triangulateMember(const SlidingWindow& window, const EstimatorParams& params, LineTrack& track, double depth) {
   const std::uint64_t group = track.group;
   const Eigen::Vector3d d_w = window.directions.at(group).d_w;
   if (track.distance_known && lineError(window, track) <= params.landmarks.line_max_error_px) return;
-  join(window, track, group, d_w, depth);
+  joinGroup(window, track, group, d_w, depth);
   track.distance_known = triangulateTied(window, params, track, d_w);
 }
 
-void release(SlidingWindow& window, const EstimatorParams& params, double depth) {
+/// Members whose sightings contradict the direction, or whose own direction is known by now, leave their group; the
+/// others are triangulated with it.
+void updateMembers(SlidingWindow& window, const EstimatorParams& params, double depth) {
   for (auto& [id, track] : window.lines) {
     if (track.group == 0) continue;
     if (static_cast<int>(track.sightings.size()) < params.landmarks.line_min_observations) continue;
     const bool fits =
         mayBeParallel(window, params, track, window.directions.at(track.group).d_w, 1.5 * params.degeneracy.max_misfit);
-    if (fits && !standsAlone(window, params, track)) {
-      place(window, params, track, depth);
+    if (fits && !isKnownWithoutGroup(window, params, track)) {
+      triangulateMember(window, params, track, depth);
     } else {
       track.group = 0;
       track.distance_known = true;
@@ -128,6 +129,7 @@ void release(SlidingWindow& window, const EstimatorParams& params, double depth)
   }
 }
 
+/// Degenerate lines join the group whose direction fits them best, if one does.
 void joinExisting(SlidingWindow& window, const EstimatorParams& params, double depth) {
   for (auto& [id, track] : window.lines) {
     if (!isCandidate(track)) continue;
@@ -139,11 +141,11 @@ void joinExisting(SlidingWindow& window, const EstimatorParams& params, double d
         best = group;
       }
     if (best != 0 && mayBeParallel(window, params, track, window.directions.at(best).d_w, params.degeneracy.max_misfit))
-      join(window, track, best, window.directions.at(best).d_w, depth);
+      joinGroup(window, track, best, window.directions.at(best).d_w, depth);
   }
 }
 
-/// Directions that might be shared: of lines that know theirs, of the motion, of gravity.
+/// Directions that might be shared: of lines whose direction is known, of the motion, of gravity.
 std::vector<Eigen::Vector3d> possibleDirections(const SlidingWindow& window) {
   std::vector<Eigen::Vector3d> result{Eigen::Vector3d::UnitZ()};
   const Eigen::Vector3d way = window.T_w_c(window.frames.back()).p - window.T_w_c(window.frames.front()).p;
@@ -189,7 +191,8 @@ Support supportOf(SlidingWindow& window, const EstimatorParams& params, const Ei
   return support;
 }
 
-void found(SlidingWindow& window, const EstimatorParams& params, double depth) {
+/// Starts a group with the direction that most lines support, if these are enough.
+void startGroup(SlidingWindow& window, const EstimatorParams& params, double depth) {
   Support best;
   for (const Eigen::Vector3d& d_w : possibleDirections(window)) {
     const bool is_new = std::all_of(window.directions.begin(), window.directions.end(), [&](const auto& entry) {
@@ -205,8 +208,8 @@ void found(SlidingWindow& window, const EstimatorParams& params, double depth) {
   joinExisting(window, params, depth);
 }
 
-/// Directions without members for a while go.
-void forget(SlidingWindow& window) {
+/// Directions that have had no member for a while are dropped.
+void dropUnusedDirections(SlidingWindow& window) {
   const FrameId newest = window.frames.back().id;
   for (const auto& [id, track] : window.lines)
     if (isMember(track)) window.directions.at(track.group).last_used = newest;
@@ -231,10 +234,10 @@ double directionMisfit(const SlidingWindow& window, const EstimatorParams& param
 
 void groupParallelLines(SlidingWindow& window, const EstimatorParams& params) {
   const double depth = medianDepth(window);
-  release(window, params, depth);
+  updateMembers(window, params, depth);
   joinExisting(window, params, depth);
-  found(window, params, depth);
-  forget(window);
+  startGroup(window, params, depth);
+  dropUnusedDirections(window);
 }
 
 }  // namespace lintel

@@ -59,7 +59,7 @@ struct RefinementReport {
   int rounds = 0, iterations = 0, merged = 0;
   std::size_t residuals = 0, points = 0, lines = 0;
   double cost_before = 0, cost_after = 0;                ///< robust, of the last adjustment's residuals
-  double held_out_before_px = 0, held_out_after_px = 0;  ///< median error of points that had no part in it
+  double held_out_before_px = 0, held_out_after_px = 0;  ///< median error of points left out of it
   double imu_before = 0, imu_after = 0;                  ///< RMS, standard deviations
   double moved_m = 0, turned_rad = 0;                    ///< most, of a keyframe
 };
@@ -72,7 +72,7 @@ using RefinementProgress = std::function<bool(double)>;
 /// consecutive keyframes; robust losses. Landmarks that turn out to be the same are joined between the rounds: what was
 /// seen again ties the trajectory together. Deterministic; one thread.
 ///
-/// The result is checked (report.accepted): cost, points that had no part in the adjustment, IMU residuals, plausible
+/// The result is checked (report.accepted): cost, points left out of the adjustment, IMU residuals, plausible
 /// changes. Whoever calls keeps what was before when it is not accepted.
 class BatchRefinement {
  public:
