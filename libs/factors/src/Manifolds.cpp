@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "lintel/factors/Manifolds.h"
 
+#include <ceres/sphere_manifold.h>
+
 #include <stdexcept>
 
 #include "lintel/factors/StateBlocks.h"
@@ -27,6 +29,7 @@ Eigen::Matrix<double, 3, 4> rotationDifferenceJacobian(const double* y, const do
 }
 
 using RowMajorMap = Eigen::Map<RowMajorMatrix>;
+using PointSphere = ceres::SphereManifold<kPointSize>;
 
 }  // namespace
 
@@ -75,6 +78,18 @@ RowMajorMatrix PoseManifold::differenceJacobian(const double* y, const double* x
   return J;
 }
 
+bool PointManifold::Plus(const double* x, const double* delta, double* y) const {
+  return PointSphere().Plus(x, delta, y);
+}
+bool PointManifold::PlusJacobian(const double* x, double* jacobian) const {
+  return PointSphere().PlusJacobian(x, jacobian);
+}
+bool PointManifold::Minus(const double* y, const double* x, double* delta) const {
+  return PointSphere().Minus(y, x, delta);
+}
+bool PointManifold::MinusJacobian(const double* x, double* jacobian) const {
+  return PointSphere().MinusJacobian(x, jacobian);
+}
 RowMajorMatrix PointManifold::differenceJacobian(const double*, const double*) const {
   throw std::logic_error("PointManifold: a point cannot be part of a prior");
 }

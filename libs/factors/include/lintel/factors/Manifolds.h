@@ -2,7 +2,6 @@
 #pragma once
 
 #include <ceres/manifold.h>
-#include <ceres/sphere_manifold.h>
 
 #include <Eigen/Core>
 #include <memory>
@@ -51,14 +50,11 @@ class PointManifold final : public StateManifold {
  public:
   int AmbientSize() const override { return 4; }
   int TangentSize() const override { return 3; }
-  bool Plus(const double* x, const double* delta, double* y) const override { return sphere_.Plus(x, delta, y); }
-  bool PlusJacobian(const double* x, double* jacobian) const override { return sphere_.PlusJacobian(x, jacobian); }
-  bool Minus(const double* y, const double* x, double* delta) const override { return sphere_.Minus(y, x, delta); }
-  bool MinusJacobian(const double* x, double* jacobian) const override { return sphere_.MinusJacobian(x, jacobian); }
+  bool Plus(const double* x, const double* delta, double* y) const override;
+  bool PlusJacobian(const double* x, double* jacobian) const override;
+  bool Minus(const double* y, const double* x, double* delta) const override;
+  bool MinusJacobian(const double* x, double* jacobian) const override;
   RowMajorMatrix differenceJacobian(const double* y, const double* x) const override;
-
- private:
-  ceres::SphereManifold<4> sphere_;
 };
 
 /// SO(3) x S^1: the orthonormal line [Bartoli2005]; see StateBlocks.h.

@@ -38,51 +38,21 @@ using CorrectionBlock = Eigen::Matrix<double, kCorrectionSize, 1>;
 /// The column of the time offset is zero: that moves the pose instead (FrameMotion.h).
 using ObservationJacobian = Eigen::Matrix<double, 2, kCorrectionSize>;
 
-inline PoseBlock toBlock(const Pose& pose) {
-  PoseBlock b;
-  b << pose.p, pose.q.coeffs();
-  return b;
-}
-inline Pose poseFromBlock(const double* b) {
-  return {Eigen::Quaterniond(Eigen::Map<const Eigen::Vector4d>(b + 3)), Eigen::Vector3d(b[0], b[1], b[2])};
-}
-inline LineBlock toBlock(const OrthonormalLine& line) {
-  LineBlock b;
-  b << line.U.coeffs(), line.phi;
-  return b;
-}
-inline OrthonormalLine lineFromBlock(const double* b) {
-  return {Eigen::Quaterniond(Eigen::Map<const Eigen::Vector4d>(b)), b[4]};
-}
-inline Eigen::Vector3d velocityOf(const double* motion) { return Eigen::Vector3d::Map(motion + kVelocityAt); }
-inline ImuBias biasOf(const double* motion) {
-  return {Eigen::Vector3d::Map(motion + kBiasGyroAt), Eigen::Vector3d::Map(motion + kBiasAccelAt)};
-}
+PoseBlock toBlock(const Pose& pose);
+Pose poseFromBlock(const double* b);
+LineBlock toBlock(const OrthonormalLine& line);
+OrthonormalLine lineFromBlock(const double* b);
+Eigen::Vector3d velocityOf(const double* motion);
+ImuBias biasOf(const double* motion);
 
 /// The calibrated camera with a correction block added.
-inline PinholeRadtan correctedCamera(PinholeRadtan camera, const double* correction) {
-  camera.fx += correction[0];
-  camera.fy += correction[1];
-  camera.cx += correction[2];
-  camera.cy += correction[3];
-  camera.k1 += correction[4];
-  camera.k2 += correction[5];
-  return camera;
-}
+PinholeRadtan correctedCamera(PinholeRadtan camera, const double* correction);
 
 /// Maps a right perturbation to quaternion coefficients: dq (x y z w) = rotationPlus(q) * dtheta.
-inline Eigen::Matrix<double, 4, 3> rotationPlus(const Eigen::Quaterniond& q) {
-  Eigen::Matrix<double, 4, 3> M;
-  const double h = 0.5;
-  M << h * q.w(), -h * q.z(), h * q.y(), h * q.z(), h * q.w(), -h * q.x(), -h * q.y(), h * q.x(), h * q.w(), -h * q.x(),
-      -h * q.y(), -h * q.z();
-  return M;
-}
+Eigen::Matrix<double, 4, 3> rotationPlus(const Eigen::Quaterniond& q);
 
 /// The left inverse of rotationPlus: dtheta = rotationLift(q) * dq. Turns a Jacobian with respect to dtheta into one
 /// with respect to the four coefficients, as Ceres expects it.
-inline Eigen::Matrix<double, 3, 4> rotationLift(const Eigen::Quaterniond& q) {
-  return 4.0 * rotationPlus(q).transpose();
-}
+Eigen::Matrix<double, 3, 4> rotationLift(const Eigen::Quaterniond& q);
 
 }  // namespace lintel

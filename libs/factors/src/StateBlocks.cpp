@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "lintel/factors/StateBlocks.h"
+
+namespace lintel {
+
+PoseBlock toBlock(const Pose& pose) {
+  PoseBlock b;
+  b << pose.p, pose.q.coeffs();
+  return b;
+}
+
+Pose poseFromBlock(const double* b) {
+  return {Eigen::Quaterniond(Eigen::Map<const Eigen::Vector4d>(b + 3)), Eigen::Vector3d(b[0], b[1], b[2])};
+}
+
+LineBlock toBlock(const OrthonormalLine& line) {
+  LineBlock b;
+  b << line.U.coeffs(), line.phi;
+  return b;
+}
+
+OrthonormalLine lineFromBlock(const double* b) {
+  return {Eigen::Quaterniond(Eigen::Map<const Eigen::Vector4d>(b)), b[4]};
+}
+
+Eigen::Vector3d velocityOf(const double* motion) { return Eigen::Vector3d::Map(motion + kVelocityAt); }
+ImuBias biasOf(const double* motion) {
+  return {Eigen::Vector3d::Map(motion + kBiasGyroAt), Eigen::Vector3d::Map(motion + kBiasAccelAt)};
+}
+
+PinholeRadtan correctedCamera(PinholeRadtan camera, const double* correction) {
+  camera.fx += correction[0];
+  camera.fy += correction[1];
+  camera.cx += correction[2];
+  camera.cy += correction[3];
+  camera.k1 += correction[4];
+  camera.k2 += correction[5];
+  return camera;
+}
+
+Eigen::Matrix<double, 4, 3> rotationPlus(const Eigen::Quaterniond& q) {
+  Eigen::Matrix<double, 4, 3> M;
+  const double h = 0.5;
+  M << h * q.w(), -h * q.z(), h * q.y(), h * q.z(), h * q.w(), -h * q.x(), -h * q.y(), h * q.x(), h * q.w(), -h * q.x(),
+      -h * q.y(), -h * q.z();
+  return M;
+}
+
+Eigen::Matrix<double, 3, 4> rotationLift(const Eigen::Quaterniond& q) { return 4.0 * rotationPlus(q).transpose(); }
+
+}  // namespace lintel
