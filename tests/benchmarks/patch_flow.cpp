@@ -6,15 +6,14 @@
 // pyramids; the time is that of the pyramids of one image, with the derivatives that OpenCV wants, and of the flow.
 #include <algorithm>
 #include <cstdio>
-#include <exception>
 #include <filesystem>
-#include <iostream>
 #include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
 #include <opencv2/video/tracking.hpp>
 #include <stdexcept>
 
 #include "../../libs/tracking/src/PatchFlow.h"
+#include "../ToolMain.h"
 #include "lintel/core/Quantiles.h"
 #include "lintel/core/ThreadTime.h"
 
@@ -142,11 +141,4 @@ int run(int argc, char** argv) {
 }  // namespace
 }  // namespace lintel
 
-int main(int argc, char** argv) {
-  try {
-    return lintel::run(argc, argv);
-  } catch (const std::exception& e) {
-    std::cerr << "patch_flow: " << e.what() << "\n";
-    return 1;
-  }
-}
+int main(int argc, char** argv) { return lintel::toolMain("patch_flow", lintel::run, argc, argv); }

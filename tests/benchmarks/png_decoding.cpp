@@ -8,17 +8,16 @@
 
 #include <algorithm>
 #include <cstdio>
-#include <exception>
 #include <filesystem>
 #include <fstream>
 #include <functional>
-#include <iostream>
 #include <iterator>
 #include <memory>
 #include <opencv2/imgcodecs.hpp>
 #include <stdexcept>
 
 #include "../../libs/sensing/src/GrayPng.h"
+#include "../ToolMain.h"
 #include "lintel/core/Quantiles.h"
 #include "lintel/core/ThreadTime.h"
 
@@ -92,11 +91,4 @@ int run(int argc, char** argv) {
 }  // namespace
 }  // namespace lintel
 
-int main(int argc, char** argv) {
-  try {
-    return lintel::run(argc, argv);
-  } catch (const std::exception& e) {
-    std::cerr << "png_decoding: " << e.what() << "\n";
-    return 1;
-  }
-}
+int main(int argc, char** argv) { return lintel::toolMain("png_decoding", lintel::run, argc, argv); }

@@ -6,13 +6,13 @@
 #include <time.h>
 
 #include <cstdio>
-#include <exception>
 #include <filesystem>
 #include <iostream>
 #include <map>
 #include <memory>
 #include <string>
 
+#include "../ToolMain.h"
 #include "IdentityCheck.h"
 #include "PointErrors.h"
 #include "TrueEdges.h"
@@ -128,11 +128,4 @@ int run(int argc, char** argv) {
 }  // namespace
 }  // namespace lintel
 
-int main(int argc, char** argv) {
-  try {
-    return lintel::run(argc, argv);
-  } catch (const std::exception& error) {
-    std::cerr << "tracking_figures: " << error.what() << "\n";
-    return 1;
-  }
-}
+int main(int argc, char** argv) { return lintel::toolMain("tracking_figures", lintel::run, argc, argv); }
