@@ -11,6 +11,7 @@
 #include "landmarks/ParallelGroups.h"
 #include "landmarks/PointTriangulation.h"
 #include "lintel/geometry/Rotation.h"
+#include "lintel/inertial/NoiseMeter.h"
 #include "lintel/inertial/Propagation.h"
 #include "solver/WindowSolver.h"
 #include "window/AdaptiveWeights.h"
@@ -25,6 +26,8 @@ namespace lintel {
 
 namespace {
 
+constexpr int kTrialFrames = 30;  // window frames that a start is on trial: as long as the window reaches, and again
+
 /// When a solve may end, see SolveLimits::min_move. After it mostly landmarks move, one by one: waiting for them took a
 /// quarter of the solver's time and made the trajectory a few per cent better on average (doc/results.md). Not where
 /// degenerate lines are used as they are, or not found (few are by the epipole): with `use` two of ten starts of `hall`
@@ -34,7 +37,7 @@ double settledMove(const DegeneracyParams& degeneracy) {
   return degeneracy.lines == "use" || degeneracy.test == "epipole" ? 0 : 0.3;
 }
 
-ImuNoise scaledNoise(const ImuNoise& noise, const FactorParams& p) {
+ImuNoise scaled(const ImuNoise& noise, const FactorParams& p) {
   return {noise.gyro_noise * p.gyro_noise_scale, noise.gyro_walk * p.gyro_walk_scale,
           noise.accel_noise * p.accel_noise_scale, noise.accel_walk * p.accel_walk_scale};
 }
@@ -50,7 +53,6 @@ class Estimator::Impl {
   Impl(const Rig& rig, const EstimatorParams& params)
       : rig_(rig),
         params_(scaledTo(rig.camera, params)),
-        noise_(scaledNoise(rig.imu_noise, params.factors)),
         initializer_(params_, rig.T_b_c),
         window_(rig) {}
 
@@ -64,6 +66,7 @@ class Estimator::Impl {
 
  private:
   bool appendImu(const FrameTracks& tracks, const ImuBatch& imu);
+  ImuNoise noise() const;
   WindowUpdate skipFrame(const FrameTracks& tracks);
   void addFrame(const FrameTracks& tracks);
   void initialise(WindowUpdate& update);
@@ -80,7 +83,7 @@ class Estimator::Impl {
   Rig rig_;
   EstimatorParams params_;
   const FactorParams configured_ = params_.factors;
-  ImuNoise noise_;
+  NoiseMeter noise_;
   Initializer initializer_;
   SlidingWindow window_;
   bool tracking_ = false;
@@ -88,7 +91,7 @@ class Estimator::Impl {
   FrameId next_frame_id_ = 0;
   ImuBatch pending_imu_;  // since the newest window frame
   std::int64_t newest_t_ns_ = 0;
-  int frames_without_points_ = 0;
+  int frames_without_points_ = 0, tracks_since_start_ = 0;
   Pose anchor_T_w_b_;  // where a new start continues
 };
 
@@ -110,6 +113,7 @@ WindowUpdate Estimator::Impl::process(const FrameTracks& tracks, const ImuBatch&
 
 /// False when the samples do not cover the time since the frame before.
 bool Estimator::Impl::appendImu(const FrameTracks& tracks, const ImuBatch& imu) {
+  noise_.add(imu);
   const std::int64_t covered_from = pending_imu_.empty() ? newest_t_ns_ : pending_imu_.back().t_ns;
   for (const ImuSample& sample : imu)
     if (pending_imu_.empty() || sample.t_ns > pending_imu_.back().t_ns) pending_imu_.push_back(sample);
@@ -117,12 +121,24 @@ bool Estimator::Impl::appendImu(const FrameTracks& tracks, const ImuBatch& imu) 
   return !imu.empty() && imu.front().t_ns <= covered_from + kSlack_ns && imu.back().t_ns >= tracks.t_ns - kSlack_ns;
 }
 
+/// Densities with a scale of 1 are checked against what the samples show; others are meant as they are given.
+ImuNoise Estimator::Impl::noise() const {
+  const ImuNoise measured = effectiveNoise(rig_.imu_noise, noise_);
+  ImuNoise noise = rig_.imu_noise;
+  const FactorParams& p = params_.factors;
+  if (p.gyro_noise_scale == 1) noise.gyro_noise = measured.gyro_noise;
+  if (p.accel_noise_scale == 1) noise.accel_noise = measured.accel_noise;
+  if (p.gyro_walk_scale == 1) noise.gyro_walk = measured.gyro_walk;
+  if (p.accel_walk_scale == 1) noise.accel_walk = measured.accel_walk;
+  return scaled(noise, p);
+}
+
 WindowUpdate Estimator::Impl::skipFrame(const FrameTracks& tracks) {
   WindowUpdate update;
   update.t_ns = tracks.t_ns;
   update.reason = "between window frames";
   if (!tracking_) return update;
-  Preintegration imu(biasOf(window_.frames.back().motion.data()), noise_);
+  Preintegration imu(biasOf(window_.frames.back().motion.data()), noise());
   imu.append(pending_imu_);
   const InertialState state = propagated(stateOf(window_.frames.back()), imu);
   update.T_w_b = state.T_w_b;
@@ -138,7 +154,7 @@ void Estimator::Impl::addFrame(const FrameTracks& tracks) {
   frame.t_ns = tracks.t_ns;
   if (!window_.frames.empty()) {
     const WindowFrame& before = window_.frames.back();
-    frame.imu = std::make_shared<Preintegration>(biasOf(before.motion.data()), noise_);
+    frame.imu = std::make_shared<Preintegration>(biasOf(before.motion.data()), noise());
     frame.imu->append(pending_imu_);
     const InertialState state = propagated(stateOf(before), *frame.imu);
     frame.pose = toBlock(state.T_w_b);
@@ -165,7 +181,7 @@ void Estimator::Impl::initialise(WindowUpdate& update) {
   window_ = std::move(buffer);
   moveToAnchor();
   tracking_ = true;
-  frames_without_points_ = 0;
+  frames_without_points_ = tracks_since_start_ = 0;
   solve(update);
   update.status = EstimatorStatus::kTracking;
   while (static_cast<int>(window_.frames.size()) > params_.keyframes) dropOldest(update);
@@ -192,6 +208,10 @@ void Estimator::Impl::track(WindowUpdate& update) {
           ? frames_without_points_ + 1
           : 0;
   std::string failure = findFailure(window_, params_.failure, predicted);
+  const bool on_trial = tracks_since_start_++ < kTrialFrames;
+  if (failure.empty() && on_trial &&
+      biasOf(window_.frames.back().motion.data()).accel.norm() > trialBiasAccel(params_.initializer))
+    failure = "the start was wrong: it led to an implausible accelerometer bias";
   if (failure.empty() && frames_without_points_ > params_.failure.max_blind_frames)
     failure = "too few features are tracked";
   if (!failure.empty()) return fail(failure, update);
@@ -212,7 +232,7 @@ void Estimator::Impl::solve(WindowUpdate& update) {
   update.iterations = solveWindow(window_, factors.factors(), params_.calibration, limits).iterations;
   if (params_.factors.adaptive_weights)
     adaptSigmas(residualScales(window_, factors.factors()), configured_, params_.factors);
-  rejectOutliers(window_, params_.landmarks);
+  { int rej = rejectOutliers(window_, params_.landmarks); if (getenv("LREJ")) { int tri=0; for (auto&[i,t]:window_.points) tri+=t.triangulated; fprintf(stderr,"rej %d tri %d\n",rej,tri);} }
   for (auto& [id, track] : window_.lines)
     if (entersProblem(track, params_.degeneracy)) updateLineUncertainty(window_, params_, track);
   for (auto& [id, track] : window_.points)

@@ -2,23 +2,15 @@
 #include "initialisation/GyroAlignment.h"
 
 #include <Eigen/Cholesky>
-#include <Eigen/Eigenvalues>
-#include <Eigen/LU>
 #include <cmath>
 #include <map>
 
+#include "initialisation/EpipolarRotation.h"
 #include "lintel/geometry/Rotation.h"
 
 namespace lintel {
 
 namespace {
-
-/// The gyro's rotation between two frames and how it depends on the bias, and what both cameras see.
-struct FramePair {
-  Eigen::Quaterniond R_a_b = Eigen::Quaterniond::Identity();      // body axes
-  Eigen::Matrix3d d_theta_d_bias = Eigen::Matrix3d::Zero();       // right perturbation of R_a_b
-  std::vector<std::pair<Eigen::Vector3d, Eigen::Vector3d>> rays;  // unit, body axes of a and b
-};
 
 std::vector<std::map<TrackId, Eigen::Vector3d>> raysInBody(const SlidingWindow& window) {
   std::map<FrameId, std::size_t> index;
@@ -51,20 +43,6 @@ std::vector<FramePair> makePairs(const SlidingWindow& window) {
   return pairs;
 }
 
-/// The direction that the normals are most perpendicular to, given weights from the previous round.
-Eigen::Vector3d translationDirection(const std::vector<Eigen::Vector3d>& normals, double width) {
-  Eigen::Vector3d t = Eigen::Vector3d::Zero();
-  for (int round = 0; round < 3; ++round) {
-    Eigen::Matrix3d M = Eigen::Matrix3d::Zero();
-    for (const Eigen::Vector3d& n : normals) {
-      const double e = round == 0 ? 0 : n.dot(t) / width;
-      M += n * n.transpose() / (1 + e * e);
-    }
-    t = Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(M).eigenvectors().col(0);
-  }
-  return t;
-}
-
 }  // namespace
 
 GyroAlignment alignGyro(const SlidingWindow& window) {
@@ -73,42 +51,10 @@ GyroAlignment alignGyro(const SlidingWindow& window) {
   const std::vector<FramePair> pairs = makePairs(window);
   if (pairs.size() < 5) return result;
   for (int iteration = 0; iteration < 15; ++iteration) {
-    Eigen::Matrix3d H = Eigen::Matrix3d::Identity() * 1e-9;
-    Eigen::Vector3d b = Eigen::Vector3d::Zero();
-    double sum = 0, weights = 0;
-    for (const FramePair& pair : pairs) {
-      const Eigen::Vector3d theta = pair.d_theta_d_bias * result.bias_gyro;
-      const Eigen::Matrix3d R = (pair.R_a_b * expRotation(theta)).toRotationMatrix();
-      const Eigen::Matrix3d d_theta = rightJacobian(theta) * pair.d_theta_d_bias;
-      std::vector<Eigen::Vector3d> normals;
-      for (const auto& [a, u] : pair.rays) normals.push_back(a.cross(R * u));
-      const Eigen::Vector3d t = translationDirection(normals, kWidth_rad);
-      const Eigen::Matrix<double, 3, 2> across = tangentBasis(t);
-      Eigen::Matrix2d Htt = Eigen::Matrix2d::Identity() * 1e-12;
-      Eigen::Matrix<double, 3, 2> Hbt = Eigen::Matrix<double, 3, 2>::Zero();
-      Eigen::Vector2d bt = Eigen::Vector2d::Zero();
-      for (std::size_t i = 0; i < normals.size(); ++i) {
-        const double e = t.dot(normals[i]), scaled = e / kWidth_rad, w = 1 / (1 + scaled * scaled);
-        // t . (a x dR u),  dR u = -R [u]x dtheta
-        const Eigen::RowVector3d J =
-            -t.transpose() * skew(pair.rays[i].first) * R * skew(pair.rays[i].second) * d_theta;
-        const Eigen::RowVector2d Jt = normals[i].transpose() * across;
-        H += w * J.transpose() * J;
-        b += w * J.transpose() * e;
-        Htt += w * Jt.transpose() * Jt;
-        Hbt += w * J.transpose() * Jt;
-        bt += w * Jt.transpose() * e;
-        sum += w * e * e;
-        weights += w;
-      }
-      // the translation's direction follows the bias: eliminated, else the two would only creep along together
-      const Eigen::Matrix<double, 3, 2> gain = Hbt * Htt.inverse();
-      H -= gain * Hbt.transpose();
-      b -= gain * bt;
-    }
-    const Eigen::Vector3d step = -H.ldlt().solve(b);
+    const EpipolarSystem system = epipolarSystem(pairs, result.bias_gyro, kWidth_rad);
+    const Eigen::Vector3d step = -system.H.ldlt().solve(system.b);
     result.bias_gyro += step;
-    result.rms_rad = std::sqrt(sum / weights);
+    result.rms_rad = std::sqrt(system.sum / system.weights);
     if (step.norm() < 1e-6) break;
   }
   result.ok = result.bias_gyro.allFinite() && result.bias_gyro.norm() < 0.5;

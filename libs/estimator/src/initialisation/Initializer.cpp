@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
 
 #include "initialisation/GravityAlignment.h"
 #include "initialisation/GyroAlignment.h"
@@ -111,15 +112,36 @@ std::string Initializer::startMoving(SlidingWindow& window) const {
   const double half = medianDisparityPx(window, window.frames.size() / 2, window.frames.size() - 1, true);
   if (std::max(parallax, half) < params_.initializer.min_parallax_px) return "waiting for parallax";
 
-  SlidingWindow trial = window;
-  for (WindowFrame& frame : trial.frames)
-    if (frame.imu) frame.imu = std::make_shared<Preintegration>(*frame.imu);
-  const GyroAlignment gyro = alignGyro(trial);
+  const GyroAlignment gyro = alignGyro(window);
   if (!gyro.ok) return "the gyroscope does not agree with the images";
+  // Where parallax is small, a slow turn and a slow shift look alike: the epipolar constraint may then be off by more
+  // than gyroscopes are. Both are tried, and the measurements decide.
+  std::string problem;
+  std::optional<SlidingWindow> best;
+  double least = std::numeric_limits<double>::infinity();
+  for (const Eigen::Vector3d& bias_gyro : {gyro.bias_gyro, Eigen::Vector3d(Eigen::Vector3d::Zero())}) {
+    SlidingWindow trial = window;
+    const std::string fault = tryMoving(bias_gyro, trial);
+    if (problem.empty()) problem = fault;
+    if (!fault.empty()) continue;
+    if (const double misfit = misfitOf(trial); misfit < least) {
+      least = misfit;
+      best = std::move(trial);
+    }
+  }
+  if (!best) return problem;
+  window = std::move(*best);
+  return {};
+}
+
+std::string Initializer::tryMoving(const Eigen::Vector3d& bias_gyro, SlidingWindow& trial) const {
   MotionBlock motion = MotionBlock::Zero();
-  motion.segment<3>(kBiasGyroAt) = gyro.bias_gyro;
+  motion.segment<3>(kBiasGyroAt) = bias_gyro;
   for (WindowFrame& frame : trial.frames)
-    if (frame.imu) frame.imu->repropagate({gyro.bias_gyro, Eigen::Vector3d::Zero()});
+    if (frame.imu) {
+      frame.imu = std::make_shared<Preintegration>(*frame.imu);
+      frame.imu->repropagate({bias_gyro, Eigen::Vector3d::Zero()});
+    }
   const GravityAlignment gravity = alignGravity(trial);
   if (!gravity.ok) return "waiting for a motion that shows scale and gravity";
 
@@ -132,15 +154,32 @@ std::string Initializer::startMoving(SlidingWindow& window) const {
   }
   levelAndCentre(trial);
   adjust(trial);
-  if (std::string problem = verify(trial); !problem.empty()) return problem;
-  window = std::move(trial);
-  return {};
+  return verify(trial);
+}
+
+double Initializer::misfitOf(SlidingWindow& window) const {
+  const double limit = params_.landmarks.point_max_error_px, sigma = params_.factors.point_sigma_px;
+  double sum = 0;
+  for (const auto& [id, track] : window.points) {
+    if (static_cast<int>(track.sightings.size()) < params_.landmarks.point_min_observations) continue;
+    const double error = track.triangulated ? std::min(limit, reprojectionError(window, track)) : limit;
+    sum += static_cast<double>(track.sightings.size()) * error * error / (sigma * sigma);
+  }
+  WindowFactors factors(window, params_.factors);
+  factors.addPriors();
+  factors.addImu();
+  for (const Factor& factor : factors.factors()) {
+    std::vector<const double*> blocks;
+    for (const BlockKey& key : factor.blocks) blocks.push_back(window.block(key));
+    Eigen::VectorXd residual(factor.cost->num_residuals());
+    factor.cost->Evaluate(blocks.data(), residual.data(), nullptr);
+    sum += residual.squaredNorm();
+  }
+  return sum;
 }
 
 void Initializer::adjust(SlidingWindow& window) const {
-  MotionBlock mean = MotionBlock::Zero();
-  mean.segment<3>(kBiasGyroAt) = window.frames.front().motion.segment<3>(kBiasGyroAt);
-  setBiasPrior(window, mean, params_.initializer.bias_gyro_sigma, std::numeric_limits<double>::infinity());
+  setBiasPrior(window, MotionBlock::Zero(), params_.initializer.bias_gyro_sigma, std::numeric_limits<double>::infinity());
   CalibrationParams frozen = params_.calibration;
   frozen.refine_extrinsics = frozen.refine_camera = frozen.refine_time_offset = false;
   LandmarkParams loose = params_.landmarks;
@@ -175,7 +214,7 @@ std::string Initializer::verify(SlidingWindow& window) const {
   if (errors.size() < 20 || static_cast<double>(errors.size()) < 0.6 * candidates)
     return "too few points agree with the motion";
   if (upperMedian(errors) > p.max_error_px) return "the images do not agree with the motion";
-  if (biasOf(window.frames.back().motion.data()).accel.norm() > p.max_bias_accel)
+  if (biasOf(window.frames.back().motion.data()).accel.norm() > std::min(p.max_bias_accel, trialBiasAccel(p)))
     return "the accelerometer bias of the start is implausible";
   if (!(relativeScaleSigma(window) < p.max_scale_sigma)) return "waiting for a motion that shows the scale";
   return {};

@@ -27,6 +27,8 @@ class Initializer {
  private:
   std::string startStatic(SlidingWindow& window) const;
   std::string startMoving(SlidingWindow& window) const;
+  std::string tryMoving(const Eigen::Vector3d& bias_gyro, SlidingWindow& trial) const;
+  double misfitOf(SlidingWindow& window) const;  ///< squared residuals, in sigmas, of points, IMU and priors
   void adjust(SlidingWindow& window) const;
   std::string verify(SlidingWindow& window) const;
   double relativeScaleSigma(SlidingWindow& window) const;
@@ -36,6 +38,10 @@ class Initializer {
   const EstimatorParams& params_;
   Pose T_b_c_calibrated_;
 };
+
+/// Accelerometer bias that a start must not have, and not come to while it is on trial [m/s^2]: four standard deviations
+/// of what is known of it beforehand. A wrong gyro bias or scale shows here first.
+inline double trialBiasAccel(const InitializerParams& params) { return 4 * params.bias_accel_sigma; }
 
 /// Median motion of points between two frames of the window in pixels; `rotation_free` takes the gyro's rotation out.
 /// Negative when fewer than ten points are seen by both.

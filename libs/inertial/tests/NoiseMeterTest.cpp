@@ -1,0 +1,84 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "lintel/inertial/NoiseMeter.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <random>
+
+namespace lintel {
+namespace {
+
+constexpr double kRate_hz = 200;
+const ImuNoise kTrue{2e-4, 2e-5, 2e-3, 3e-3};
+
+/// Batches of 0.1 s of a hand-held motion with white noise, and vibration of an amplitude [m/s^2] from a time on.
+NoiseMeter measure(double duration_s, double vibration = 0, double vibrates_from_s = 0) {
+  std::mt19937 random(3);
+  std::normal_distribution<double> normal;
+  const auto noise = [&](double density) -> Eigen::Vector3d {
+    const double sigma = density * std::sqrt(kRate_hz);
+    return sigma * Eigen::Vector3d(normal(random), normal(random), normal(random));
+  };
+  NoiseMeter meter;
+  ImuBatch batch;
+  for (int i = 0; i < duration_s * kRate_hz; ++i) {
+    const double t = i / kRate_hz, shake = t >= vibrates_from_s ? vibration * std::sin(2 * M_PI * 83 * t) : 0;
+    ImuSample sample;
+    sample.t_ns = std::llround(1e9 * t);
+    sample.gyro = Eigen::Vector3d(0.3 * std::sin(3 * t), 0.2 * std::cos(4 * t), 0.02) + noise(kTrue.gyro_noise);
+    sample.accel = Eigen::Vector3d(0.5 * std::cos(4 * t), shake, 9.8 + std::sin(2 * t)) + noise(kTrue.accel_noise);
+    batch.push_back(sample);
+    if (batch.size() == 20) {
+      meter.add(batch);
+      batch.assign(1, sample);
+    }
+  }
+  return meter;
+}
+
+TEST(NoiseMeter, FindsWhiteNoiseUnderMotion) {
+  const NoiseMeter meter = measure(3);
+  ASSERT_TRUE(meter.now());
+  EXPECT_NEAR(meter.now()->gyro_density, kTrue.gyro_noise, 0.1 * kTrue.gyro_noise);
+  EXPECT_NEAR(meter.now()->accel_density, kTrue.accel_noise, 0.1 * kTrue.accel_noise);
+}
+
+TEST(NoiseMeter, NeedsAQuarterOfASecond) {
+  EXPECT_FALSE(measure(0.2).now());
+  EXPECT_TRUE(measure(0.5).now());
+}
+
+TEST(EffectiveNoise, KeepsWhatAgreesAndReplacesNonsense) {
+  const NoiseMeter meter = measure(3);
+  const ImuNoise kept = effectiveNoise(kTrue, meter);
+  EXPECT_GE(kept.accel_noise, kTrue.accel_noise);
+  EXPECT_LT(kept.accel_noise, 2 * kTrue.accel_noise);
+  EXPECT_TRUE(noiseRemark(kTrue, meter).empty()) << noiseRemark(kTrue, meter);
+
+  ImuNoise nonsense = kTrue;
+  nonsense.accel_noise = 0.18;
+  EXPECT_LT(effectiveNoise(nonsense, meter).accel_noise, 0.008);
+  EXPECT_NE(noiseRemark(nonsense, meter).find("accelerometer_noise_density: 0.18"), std::string::npos)
+      << noiseRemark(nonsense, meter);
+  nonsense.gyro_noise = 1e-9;
+  EXPECT_GE(effectiveNoise(nonsense, meter).gyro_noise, 5e-5);
+}
+
+TEST(EffectiveNoise, VibrationCountsAndTheQuietTimeIsRemembered) {
+  const ImuNoise quiet = effectiveNoise(kTrue, measure(3));
+  const NoiseMeter meter = measure(6, 2, 3);
+  EXPECT_GT(effectiveNoise(kTrue, meter).accel_noise, 2 * quiet.accel_noise);
+  EXPECT_NEAR(meter.quietest()->accel_density, kTrue.accel_noise, 0.2 * kTrue.accel_noise);
+}
+
+TEST(EffectiveNoise, WithoutSamplesOnlyTheBoundsOfSensorsApply) {
+  const ImuNoise noise = effectiveNoise({1e-4, 1e-9, 0.18, 1}, NoiseMeter());
+  EXPECT_EQ(noise.gyro_noise, 1e-4);
+  EXPECT_EQ(noise.gyro_walk, 1e-5);
+  EXPECT_EQ(noise.accel_noise, 0.03);
+  EXPECT_EQ(noise.accel_walk, 0.01);
+}
+
+}  // namespace
+}  // namespace lintel
