@@ -232,7 +232,7 @@ void Estimator::Impl::solve(WindowUpdate& update) {
   update.iterations = solveWindow(window_, factors.factors(), params_.calibration, limits).iterations;
   if (params_.factors.adaptive_weights)
     adaptSigmas(residualScales(window_, factors.factors()), configured_, params_.factors);
-  { int rej = rejectOutliers(window_, params_.landmarks); if (getenv("LREJ")) { int tri=0; for (auto&[i,t]:window_.points) tri+=t.triangulated; fprintf(stderr,"rej %d tri %d\n",rej,tri);} }
+  rejectOutliers(window_, params_.landmarks);
   for (auto& [id, track] : window_.lines)
     if (entersProblem(track, params_.degeneracy)) updateLineUncertainty(window_, params_, track);
   for (auto& [id, track] : window_.points)
@@ -284,7 +284,8 @@ void Estimator::Impl::fail(const std::string& reason, WindowUpdate& update) {
   window_ = SlidingWindow(rig_);
   window_.extrinsics = former.extrinsics;
   window_.correction = former.correction;
-  if (!former.extrinsics.allFinite() || !former.correction.allFinite()) {
+  // what a wrong start made of the calibration is wrong, too
+  if (tracks_since_start_ <= kTrialFrames || !former.extrinsics.allFinite() || !former.correction.allFinite()) {
     window_.extrinsics = toBlock(rig_.T_b_c);
     window_.correction.setZero();
   }

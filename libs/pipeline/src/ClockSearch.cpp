@@ -2,6 +2,8 @@
 #include "ClockSearch.h"
 
 #include <cmath>
+#include <optional>
+#include <vector>
 
 #include "lintel/tracking/FrontEnd.h"
 
@@ -11,7 +13,7 @@ namespace {
 
 constexpr double kLongest_s = 5;
 constexpr double kFirstTry_s = 1.5, kTryEvery_s = 0.5;
-constexpr double kGoodSigma_s = 0.001;
+constexpr double kGoodSigma_s = 0.002;
 constexpr double kLeftToEstimator_s = 0.005;  // its model is linear in the offset
 constexpr double kSignificant = 4;            // standard deviations
 
@@ -41,7 +43,8 @@ ClockSearch searchClock(Recording& recording, const FrontEndParams& tracking) {
     const double t_s = 1e-9 * static_cast<double>(frames.back().t_ns - frames.front().t_ns);
     if (t_s < next_try_s) continue;
     next_try_s += kTryEvery_s;
-    search.clock = findClockOffset(frames, imu, recording.rig());
+    const ClockOffset clock = findClockOffset(frames, imu, recording.rig());
+    if (clock.determined && (!search.clock.determined || clock.sigma_s < search.clock.sigma_s)) search.clock = clock;
     if (t_s >= kLongest_s || (search.clock.determined && search.clock.sigma_s < kGoodSigma_s)) break;
   }
   const ClockOffset& clock = search.clock;

@@ -14,7 +14,7 @@ namespace lintel {
 struct ClockSearch {
   std::deque<FrameWithImu> read;  ///< to be processed still
   std::exception_ptr fault;       ///< why it could not be read on
-  ClockOffset clock;              ///< as found last
+  ClockOffset clock;              ///< the best determined one
   double offset_s = 0;            ///< to correct the stamps by; 0 where the images' stamps are good to some milliseconds
 };
 

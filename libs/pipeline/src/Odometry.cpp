@@ -1,13 +1,18 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "lintel/pipeline/Odometry.h"
 
+#include <algorithm>
+#include <cstdio>
 #include <exception>
 #include <stdexcept>
 #include <thread>
 
+#include "ClockSearch.h"
 #include "EstimationStage.h"
+#include "RunCheck.h"
 #include "TrackingStage.h"
 #include "lintel/core/BoundedQueue.h"
+#include "lintel/sensing/ShiftedRecording.h"
 
 namespace lintel {
 
@@ -46,6 +51,26 @@ void trackOnItsOwnThread(TrackingStage& tracking, const FrameTaker& take) {
   if (failure) std::rethrow_exception(failure);
 }
 
+/// The configuration, the time offset only as well known as the search has found it.
+Configuration withClock(Configuration configuration, const ClockSearch& search) {
+  double& sigma_s = configuration.estimator.calibration.time_offset_sigma_s;
+  if (search.offset_s != 0) sigma_s = std::max(sigma_s, search.clock.sigma_s);
+  return configuration;
+}
+
+/// Stages and map know the offset that remains after the stamps have been corrected; the result tells all of it.
+void addClock(const ClockSearch& search, OdometryResult& result) {
+  if (search.offset_s == 0) return;
+  result.time_offset_s += search.offset_s;
+  result.window_calibration.time_offset_s += search.offset_s;
+  char text[160];
+  std::snprintf(text, sizeof text,
+                "clocks of images and IMU: an image with stamp t shows the world at t %+.1f ms; found from their "
+                "rotations before the start, corrected",
+                1000 * search.offset_s);
+  result.remarks.emplace_back(text);
+}
+
 }  // namespace
 
 OdometryResult runOdometry(Recording& recording, const Configuration& configuration, const RunOptions& options) {
@@ -55,12 +80,17 @@ OdometryResult runOdometry(Recording& recording, const Configuration& configurat
   const auto cancelled = [&] {
     return result.cancelled = result.cancelled || (options.cancelled && options.cancelled());
   };
-  TrackingStage tracking(recording, configuration.tracking, result);
-  EstimationStage estimation(recording.rig(), configuration, result);
+  ClockSearch search = searchClock(recording, configuration.tracking);
+  ShiftedRecording prepared(recording, std::move(search.read), search.offset_s, search.fault);
+  const Configuration used = withClock(configuration, search);
+  TrackingStage tracking(prepared, used.tracking, result);
+  EstimationStage estimation(recording.rig(), used, result);
+  RunCheck check(recording.rig());
   const std::size_t expected_frames = recording.expectedFrames();
   const FrameTaker take = [&](const TrackedFrame& frame) {
     if (cancelled()) return false;
     const WindowUpdate update = estimation.process(frame);
+    check.add(frame.step.imu, update);
     const std::size_t done = result.statistics.frames;
     if (options.progress) options.progress({RunStage::kFrames, done, expected_frames});
     if (options.observer) options.observer(frame.step.frame, frame.tracks, update, done);
@@ -73,6 +103,9 @@ OdometryResult runOdometry(Recording& recording, const Configuration& configurat
     return share >= 1 || !cancelled();
   });
   result.statistics.front_end = tracking.statistics();
+  addClock(search, result);
+  if (const std::string noise = check.noiseRemark(); !noise.empty()) result.remarks.push_back("noise of the IMU: " + noise);
+  result.verdict = check.verdict(result.statistics);
   return result;
 }
 

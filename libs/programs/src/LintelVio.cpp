@@ -65,12 +65,14 @@ class LintelVio {
     const double wall_s = costs_.wall_s =
         std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
     if (result.statistics.frames == 0 && !result.error.empty()) throw RecordingError(result.error);
-    const std::vector<std::string> warnings = recording->warnings();
+    std::vector<std::string> warnings = recording->warnings();
+    warnings.insert(warnings.end(), result.remarks.begin(), result.remarks.end());
     for (const std::string& warning : warnings) err_ << kName << ": warning: " << warning << "\n";
     writeOutput(result, warnings);
     if (!quiet_) summarise(result, wall_s);
     if (!result.error.empty())
       throw RecordingError(result.error + " (what was computed until then is in " + output_ + ")");
+    if (!result.verdict.empty()) throw std::runtime_error(input_ + ": not to be trusted: " + result.verdict);
     if (result.trajectory.empty()) throw std::runtime_error(noPose(result));
     return 0;
   }
@@ -198,6 +200,7 @@ class LintelVio {
     double length = 0;
     for (std::size_t i = 1; i < result.trajectory.size(); ++i)
       length += (result.trajectory[i].T_w_b.p - result.trajectory[i - 1].T_w_b.p).norm();
+    if (!result.verdict.empty()) out_ << "NOT TO BE TRUSTED: " << result.verdict << "\n";
     out_ << std::fixed << std::setprecision(1);
     out_ << s.frames << " frames in " << durationText(wall_s) << " ("
          << static_cast<double>(s.frames) / std::max(wall_s, 1e-3) << " frames/s), " << s.frames_with_pose

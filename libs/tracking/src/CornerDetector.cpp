@@ -11,6 +11,7 @@ namespace lintel {
 namespace {
 
 constexpr int kBlock_px = 8;  ///< one candidate a block of 8 x 8 pixels, a fraction of the distance between points
+constexpr float kFewCorners = 0.2F;  ///< of min_quality, where fewer corners reach it than there may be points
 
 struct Candidate {
   int x, y;
@@ -95,7 +96,11 @@ std::vector<cv::Point2f> CornerDetector::candidates(const ImagePyramid& pyramid)
   const int scale = 1 << level;
   const cv::Mat response = cornerResponse(pyramid.image(level));
   const int border = params_.border_px / scale + 2;
-  std::vector<Candidate> maxima = blockMaxima(response, border, static_cast<float>(params_.min_quality));
+  const auto quality = static_cast<float>(params_.min_quality);
+  std::vector<Candidate> maxima = blockMaxima(response, border, quality);
+  // A lamp or a sheet of paper in a dim room outshines every other corner.
+  if (maxima.size() < static_cast<std::size_t>(params_.max_points))
+    maxima = blockMaxima(response, border, kFewCorners * quality);
   std::sort(maxima.begin(), maxima.end(), [](const Candidate& a, const Candidate& b) {
     return a.response != b.response ? a.response > b.response : (a.y != b.y ? a.y < b.y : a.x < b.x);
   });

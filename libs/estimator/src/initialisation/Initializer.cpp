@@ -110,7 +110,9 @@ std::string Initializer::startStatic(SlidingWindow& window) const {
 std::string Initializer::startMoving(SlidingWindow& window) const {
   const double parallax = medianDisparityPx(window, 0, window.frames.size() - 1, true);
   const double half = medianDisparityPx(window, window.frames.size() / 2, window.frames.size() - 1, true);
-  if (std::max(parallax, half) < params_.initializer.min_parallax_px) return "waiting for parallax";
+  // A full buffer holds all the parallax that there will be of a slow motion; the sigma of the scale decides then.
+  const bool full = static_cast<int>(window.frames.size()) >= params_.initializer.max_frames;
+  if (std::max(parallax, half) < params_.initializer.min_parallax_px * (full ? 0.5 : 1)) return "waiting for parallax";
 
   const GyroAlignment gyro = alignGyro(window);
   if (!gyro.ok) return "the gyroscope does not agree with the images";

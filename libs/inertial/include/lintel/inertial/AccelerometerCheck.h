@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "lintel/core/Frame.h"
+#include "lintel/geometry/Pose.h"
+
+namespace lintel {
+
+/// What the accelerometer's values say about its unit and axes, whatever an estimator made of them.
+///
+/// Size: over a second, a body that is carried or flies changes its speed little: the mean specific force is gravity's.
+/// Axes: turned by the gyroscope into the axes of the start of some seconds, gravity stays where it is. If the axes
+/// of the accelerometer are not the gyroscope's, it moves; the interchange of axes with which it moves least is the
+/// likely one.
+class AccelerometerCheck {
+ public:
+  AccelerometerCheck();
+
+  /// Samples between two frames (core/Frame.h), ascending; `bias_gyro` as far as it is known.
+  void add(const ImuBatch& batch, const Eigen::Vector3d& bias_gyro);
+
+  /// Median of the size of a second's mean specific force [m/s^2]; 0 before the first second is over.
+  double gravity() const;
+
+  /// What is wrong with the size, in words; empty when it can be gravity.
+  std::string sizeFault() const;
+
+  /// Which axes are likely interchanged, in words; empty when they fit best as they are, or nothing can be said.
+  std::string axesFault() const;
+
+ private:
+  void closeMean();
+  void closeSpan();
+
+  std::int64_t last_ns_ = 0, mean_start_ns_ = 0, span_start_ns_ = 0;
+  Eigen::Quaterniond R_ = Eigen::Quaterniond::Identity();  ///< body axes now, in those of the span's start
+  Eigen::Matrix<double, 9, 3> sum_ = Eigen::Matrix<double, 9, 3>::Zero();  ///< of R's columns by accelerations
+  int count_ = 0;
+  std::vector<Eigen::Matrix<double, 9, 3>> means_;  ///< of the span
+  std::vector<double> sizes_;
+  std::vector<double> misfits_;  ///< by axes assignment: summed squared deviations from a span's mean
+  int compared_ = 0;
+};
+
+}  // namespace lintel

@@ -1,0 +1,115 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "lintel/inertial/AccelerometerCheck.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+
+#include "lintel/core/Quantiles.h"
+#include "lintel/geometry/Frames.h"
+#include "lintel/geometry/Rotation.h"
+
+namespace lintel {
+
+namespace {
+
+constexpr std::int64_t kMean_ns = 500'000'000, kSpan_ns = 5'000'000'000, kLargestGap_ns = 100'000'000;
+// Bias and scale error of cheap sensors reach 0.5 m/s^2, changes of speed within a second 1 m/s.
+constexpr double kSizeTolerance = 0.2;  // of gravity
+constexpr double kLeastGravity = 0.5;   // m/s^2: less is noise and motion alone
+// Squared deviations with the right axes come from motion; with wrong ones a tilt of 10 degrees adds 3 (m/s^2)^2.
+constexpr double kClearlyBetter = 1.5;
+constexpr int kLeastCompared = 20;
+
+/// A way in which the axes may be mixed up: axis i of the body shows what the file's column `column[i]` has. Without
+/// changes of sign: one of a single axis is hard to see, and all three together not at all.
+struct Axes {
+  int column[3];
+};
+constexpr Axes kAssignments[] = {{{0, 1, 2}}, {{0, 2, 1}}, {{1, 0, 2}}, {{2, 1, 0}}, {{1, 2, 0}}, {{2, 0, 1}}};
+
+}  // namespace
+
+AccelerometerCheck::AccelerometerCheck() : misfits_(std::size(kAssignments), 0.0) {}
+
+void AccelerometerCheck::add(const ImuBatch& batch, const Eigen::Vector3d& bias_gyro) {
+  for (const ImuSample& sample : batch) {
+    if (last_ns_ != 0 && sample.t_ns <= last_ns_) continue;
+    if (last_ns_ == 0 || sample.t_ns - last_ns_ > kLargestGap_ns) {
+      means_.clear();
+      sum_.setZero();
+      count_ = 0;
+      mean_start_ns_ = span_start_ns_ = sample.t_ns;
+      R_.setIdentity();
+    } else {
+      R_ = (R_ * expRotation((sample.gyro - bias_gyro) * 1e-9 * static_cast<double>(sample.t_ns - last_ns_))).normalized();
+    }
+    last_ns_ = sample.t_ns;
+    const Eigen::Matrix3d R = R_.toRotationMatrix();
+    sum_ += Eigen::Map<const Eigen::Matrix<double, 9, 1>>(R.data()) * sample.accel.transpose();
+    ++count_;
+    if (sample.t_ns - mean_start_ns_ >= kMean_ns) closeMean();
+    if (sample.t_ns - span_start_ns_ >= kSpan_ns) closeSpan();
+  }
+}
+
+void AccelerometerCheck::closeMean() {
+  means_.push_back(sum_ / count_);
+  sum_.setZero();
+  count_ = 0;
+  mean_start_ns_ = last_ns_;
+  if (means_.size() % 2 != 0) return;
+  const Eigen::Matrix<double, 9, 3> second = 0.5 * (means_.back() + means_[means_.size() - 2]);
+  sizes_.push_back(Eigen::Vector3d(second.block<3, 1>(0, 0) + second.block<3, 1>(3, 1) + second.block<3, 1>(6, 2)).norm());
+}
+
+void AccelerometerCheck::closeSpan() {
+  for (std::size_t k = 0; k < misfits_.size(); ++k) {
+    const int* column = kAssignments[k].column;
+    std::vector<Eigen::Vector3d> turned;
+    Eigen::Vector3d mean = Eigen::Vector3d::Zero();
+    for (const auto& m : means_) {
+      turned.emplace_back(m.block<3, 1>(0, column[0]) + m.block<3, 1>(3, column[1]) + m.block<3, 1>(6, column[2]));
+      mean += turned.back() / static_cast<double>(means_.size());
+    }
+    for (const Eigen::Vector3d& f : turned) misfits_[k] += (f - mean).squaredNorm();
+  }
+  compared_ += static_cast<int>(means_.size());
+  means_.clear();
+  span_start_ns_ = last_ns_;
+  R_.setIdentity();
+}
+
+double AccelerometerCheck::gravity() const {
+  std::vector<double> sizes = sizes_;
+  return sizes.empty() ? 0 : median(sizes);
+}
+
+std::string AccelerometerCheck::sizeFault() const {
+  if (sizes_.empty()) return {};
+  const double seen = gravity();
+  if (std::abs(seen / kGravity - 1) < kSizeTolerance) return {};
+  char text[200];
+  std::snprintf(text, sizeof text, "the accelerometer shows %.2f m/s^2 where gravity is %.2f", seen, kGravity);
+  std::string fault = text;
+  if (std::abs(seen - 1) < kSizeTolerance)
+    fault += ": its values are in g, not in m/s^2";
+  else if (seen < kLeastGravity)
+    fault += ": gravity has been taken out of its values; the raw ones are needed";
+  else
+    fault += ": check its unit (m/s^2, gravity included)";
+  return fault;
+}
+
+std::string AccelerometerCheck::axesFault() const {
+  if (compared_ < kLeastCompared) return {};
+  const auto best = std::min_element(misfits_.begin(), misfits_.end());
+  if (!(misfits_[0] > kClearlyBetter * *best)) return {};
+  const int* column = kAssignments[best - misfits_.begin()].column;
+  const char* names = "xyz";
+  std::string order;
+  for (int i = 0; i < 3; ++i) order += (i ? ", " : "") + std::string(1, names[column[i]]);
+  return "the accelerometer's axes do not turn with the gyroscope's: x, y, z seem to be its columns " + order;
+}
+
+}  // namespace lintel

@@ -1,0 +1,66 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "lintel/inertial/AccelerometerCheck.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <functional>
+
+#include "lintel/geometry/Rotation.h"
+
+namespace lintel {
+namespace {
+
+/// Twelve seconds of a body that tilts by 15 degrees and shakes a little; `change` is what the file makes of it.
+AccelerometerCheck checkOf(const std::function<Eigen::Vector3d(const Eigen::Vector3d&)>& change) {
+  AccelerometerCheck check;
+  Eigen::Quaterniond R_w_b = Eigen::Quaterniond::Identity();
+  ImuBatch batch;
+  for (int i = 0; i < 2400; ++i) {
+    const double t = i * 0.005;
+    ImuSample sample;
+    sample.t_ns = 1'000'000'000 + std::llround(1e9 * t);
+    sample.gyro = Eigen::Vector3d(0.5 * std::cos(2 * t), 0.4 * std::cos(1.5 * t), 0.3);
+    R_w_b = R_w_b * expRotation(sample.gyro * 0.005);
+    sample.accel = change(R_w_b.conjugate() * Eigen::Vector3d(0.3 * std::sin(5 * t), 0.2 * std::sin(3 * t), 9.81));
+    batch.push_back(sample);
+    if (batch.size() == 21) {
+      check.add(batch, Eigen::Vector3d::Zero());
+      batch.assign(1, sample);
+    }
+  }
+  return check;
+}
+
+TEST(AccelerometerCheck, NothingIsWrongWithAGoodOne) {
+  const AccelerometerCheck check = checkOf([](const Eigen::Vector3d& f) { return f; });
+  EXPECT_NEAR(check.gravity(), 9.81, 0.1);
+  EXPECT_EQ(check.sizeFault(), "");
+  EXPECT_EQ(check.axesFault(), "");
+}
+
+TEST(AccelerometerCheck, UnitAndMissingGravityAreNamed) {
+  EXPECT_NE(checkOf([](const Eigen::Vector3d& f) { return Eigen::Vector3d(f / 9.81); }).sizeFault().find("in g"),
+            std::string::npos);
+  const AccelerometerCheck linear =
+      checkOf([](const Eigen::Vector3d& f) { return Eigen::Vector3d(0.02 * f); });
+  EXPECT_NE(linear.sizeFault().find("taken out"), std::string::npos) << linear.sizeFault();
+  EXPECT_NE(checkOf([](const Eigen::Vector3d& f) { return Eigen::Vector3d(2 * f); }).sizeFault().find("unit"),
+            std::string::npos);
+}
+
+TEST(AccelerometerCheck, InterchangedAxesAreNamed) {
+  const AccelerometerCheck check =
+      checkOf([](const Eigen::Vector3d& f) { return Eigen::Vector3d(f.x(), f.z(), f.y()); });
+  EXPECT_EQ(check.sizeFault(), "");
+  EXPECT_NE(check.axesFault().find("x, z, y"), std::string::npos) << check.axesFault();
+}
+
+TEST(AccelerometerCheck, SaysNothingWithoutData) {
+  EXPECT_EQ(AccelerometerCheck().gravity(), 0);
+  EXPECT_EQ(AccelerometerCheck().sizeFault(), "");
+  EXPECT_EQ(AccelerometerCheck().axesFault(), "");
+}
+
+}  // namespace
+}  // namespace lintel
