@@ -51,10 +51,7 @@ InertialState stateOf(const WindowFrame& frame) {
 class Estimator::Impl {
  public:
   Impl(const Rig& rig, const EstimatorParams& params)
-      : rig_(rig),
-        params_(scaledTo(rig.camera, params)),
-        initializer_(params_, rig.T_b_c),
-        window_(rig) {}
+      : rig_(rig), params_(scaledTo(rig.camera, params)), initializer_(params_, rig.T_b_c), window_(rig) {}
 
   WindowUpdate process(const FrameTracks& tracks, const ImuBatch& imu);
   WindowUpdate finish();

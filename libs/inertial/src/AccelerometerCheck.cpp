@@ -42,7 +42,8 @@ void AccelerometerCheck::add(const ImuBatch& batch, const Eigen::Vector3d& bias_
       mean_start_ns_ = span_start_ns_ = sample.t_ns;
       R_.setIdentity();
     } else {
-      R_ = (R_ * expRotation((sample.gyro - bias_gyro) * 1e-9 * static_cast<double>(sample.t_ns - last_ns_))).normalized();
+      R_ = (R_ * expRotation((sample.gyro - bias_gyro) * 1e-9 * static_cast<double>(sample.t_ns - last_ns_)))
+               .normalized();
     }
     last_ns_ = sample.t_ns;
     const Eigen::Matrix3d R = R_.toRotationMatrix();
@@ -60,7 +61,8 @@ void AccelerometerCheck::closeMean() {
   mean_start_ns_ = last_ns_;
   if (means_.size() % 2 != 0) return;
   const Eigen::Matrix<double, 9, 3> second = 0.5 * (means_.back() + means_[means_.size() - 2]);
-  sizes_.push_back(Eigen::Vector3d(second.block<3, 1>(0, 0) + second.block<3, 1>(3, 1) + second.block<3, 1>(6, 2)).norm());
+  sizes_.push_back(
+      Eigen::Vector3d(second.block<3, 1>(0, 0) + second.block<3, 1>(3, 1) + second.block<3, 1>(6, 2)).norm());
 }
 
 void AccelerometerCheck::closeSpan() {

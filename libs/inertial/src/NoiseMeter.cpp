@@ -90,8 +90,7 @@ ImuNoise effectiveNoise(const ImuNoise& given, const NoiseMeter& meter) {
                  kAccelNoise.clamp(given.accel_noise), kAccelWalk.clamp(given.accel_walk)};
   if (!meter.now()) return noise;
   const SampledNoise &now = *meter.now(), &quiet = *meter.quietest();
-  noise.gyro_noise =
-      sum(white(given.gyro_noise, kGyroNoise, quiet.gyro_density), now.gyro_density, now.gyro_motion);
+  noise.gyro_noise = sum(white(given.gyro_noise, kGyroNoise, quiet.gyro_density), now.gyro_density, now.gyro_motion);
   noise.accel_noise =
       sum(white(given.accel_noise, kAccelNoise, quiet.accel_density), now.accel_density, now.accel_motion);
   return noise;

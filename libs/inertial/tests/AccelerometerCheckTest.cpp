@@ -42,8 +42,7 @@ TEST(AccelerometerCheck, NothingIsWrongWithAGoodOne) {
 TEST(AccelerometerCheck, UnitAndMissingGravityAreNamed) {
   EXPECT_NE(checkOf([](const Eigen::Vector3d& f) { return Eigen::Vector3d(f / 9.81); }).sizeFault().find("in g"),
             std::string::npos);
-  const AccelerometerCheck linear =
-      checkOf([](const Eigen::Vector3d& f) { return Eigen::Vector3d(0.02 * f); });
+  const AccelerometerCheck linear = checkOf([](const Eigen::Vector3d& f) { return Eigen::Vector3d(0.02 * f); });
   EXPECT_NE(linear.sizeFault().find("taken out"), std::string::npos) << linear.sizeFault();
   EXPECT_NE(checkOf([](const Eigen::Vector3d& f) { return Eigen::Vector3d(2 * f); }).sizeFault().find("unit"),
             std::string::npos);

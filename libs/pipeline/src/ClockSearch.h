@@ -15,7 +15,7 @@ struct ClockSearch {
   std::deque<FrameWithImu> read;  ///< to be processed still
   std::exception_ptr fault;       ///< why it could not be read on
   ClockOffset clock;              ///< the best determined one
-  double offset_s = 0;            ///< to correct the stamps by; 0 where the images' stamps are good to some milliseconds
+  double offset_s = 0;  ///< to correct the stamps by; 0 where the images' stamps are good to some milliseconds
 };
 
 /// Follows points through the first seconds until the offset is determined, at most five seconds. Offsets that the

@@ -104,7 +104,8 @@ OdometryResult runOdometry(Recording& recording, const Configuration& configurat
   });
   result.statistics.front_end = tracking.statistics();
   addClock(search, result);
-  if (const std::string noise = check.noiseRemark(); !noise.empty()) result.remarks.push_back("noise of the IMU: " + noise);
+  if (const std::string noise = check.noiseRemark(); !noise.empty())
+    result.remarks.push_back("noise of the IMU: " + noise);
   result.verdict = check.verdict(result.statistics);
   return result;
 }

@@ -42,8 +42,7 @@ std::string RunCheck::verdict(const OdometryStatistics& s) const {
   const double all = static_cast<double>(s.last_frame_ns - s.first_frame_ns) * 1e-9;
   const double expected = s.first_pose_s < 0 || all <= 0 ? 0 : static_cast<double>(s.frames) * after_first / all;
   if (!(largest_acceleration_ < kLargestAcceleration)) {
-    std::snprintf(text, sizeof text, "the estimate diverged: it gained %.0f m/s within 5 s",
-                  5 * largest_acceleration_);
+    std::snprintf(text, sizeof text, "the estimate diverged: it gained %.0f m/s within 5 s", 5 * largest_acceleration_);
     fault = text;
   } else if (s.resets > 0 && static_cast<double>(s.frames_with_pose) < kLeastShareWithPose * expected) {
     std::snprintf(text, sizeof text, "the estimate did not last: %zu starts, poses for %.0f %% of the frames",

@@ -11,7 +11,7 @@ namespace lintel {
 namespace {
 
 constexpr int kBlock_px = 8;  ///< one candidate a block of 8 x 8 pixels, a fraction of the distance between points
-constexpr float kFewCorners = 0.2F;  ///< of min_quality, where fewer corners reach it than there may be points
+constexpr double kFewCorners = 0.2;  ///< of min_quality, where corners that reach it are too few for half of the points
 
 struct Candidate {
   int x, y;
@@ -90,17 +90,13 @@ std::vector<Candidate> blockMaxima(const cv::Mat& response, int border, float mi
 
 }  // namespace
 
-std::vector<cv::Point2f> CornerDetector::candidates(const ImagePyramid& pyramid) const {
+std::vector<cv::Point2f> CornerDetector::candidates(const ImagePyramid& pyramid, double min_quality) const {
   // Half resolution: a quarter of the work, less noise, and KLT follows the patch, not the pixel.
   const int level = std::min(1, pyramid.levels() - 1);
   const int scale = 1 << level;
   const cv::Mat response = cornerResponse(pyramid.image(level));
   const int border = params_.border_px / scale + 2;
-  const auto quality = static_cast<float>(params_.min_quality);
-  std::vector<Candidate> maxima = blockMaxima(response, border, quality);
-  // A lamp or a sheet of paper in a dim room outshines every other corner.
-  if (maxima.size() < static_cast<std::size_t>(params_.max_points))
-    maxima = blockMaxima(response, border, kFewCorners * quality);
+  std::vector<Candidate> maxima = blockMaxima(response, border, static_cast<float>(min_quality));
   std::sort(maxima.begin(), maxima.end(), [](const Candidate& a, const Candidate& b) {
     return a.response != b.response ? a.response > b.response : (a.y != b.y ? a.y < b.y : a.x < b.x);
   });
@@ -127,22 +123,27 @@ std::vector<cv::Point2f> CornerDetector::detect(const ImagePyramid& pyramid, con
     occupied.insert(p);
     ++countAt(p);
   }
-  std::vector<cv::Point2f> left = candidates(pyramid);
-  for (int turn = 0; !left.empty(); ++turn) {
-    std::vector<cv::Point2f> later;
-    for (const cv::Point2f& p : left) {
-      if (!occupied.isFree(p)) continue;
-      if (countAt(p) > turn) {
-        later.push_back(p);
-        continue;
+  const auto choose = [&](std::vector<cv::Point2f> left) {
+    for (int turn = 0; !left.empty(); ++turn) {
+      std::vector<cv::Point2f> later;
+      for (const cv::Point2f& p : left) {
+        if (!occupied.isFree(p)) continue;
+        if (countAt(p) > turn) {
+          later.push_back(p);
+          continue;
+        }
+        occupied.insert(p);
+        ++countAt(p);
+        found.push_back(p);
+        if (static_cast<int>(found.size()) == wanted) return;
       }
-      occupied.insert(p);
-      ++countAt(p);
-      found.push_back(p);
-      if (static_cast<int>(found.size()) == wanted) return found;
+      left = std::move(later);
     }
-    left = std::move(later);
-  }
+  };
+  choose(candidates(pyramid, params_.min_quality));
+  // A lamp or a sheet of paper in a dim room outshines every other corner.
+  if (2 * (taken.size() + found.size()) < static_cast<std::size_t>(params_.max_points))
+    choose(candidates(pyramid, kFewCorners * params_.min_quality));
   return found;
 }
 

@@ -20,7 +20,7 @@ class CornerDetector {
 
  private:
   /// Local maxima of the corner response, strongest first.
-  std::vector<cv::Point2f> candidates(const ImagePyramid& pyramid) const;
+  std::vector<cv::Point2f> candidates(const ImagePyramid& pyramid, double min_quality) const;
 
   PointTrackerParams params_;
 };

@@ -15,13 +15,13 @@ namespace lintel {
 
 namespace {
 
-constexpr double kStep_s = 0.005;           // of the grid: much less than a turn takes
-constexpr double kLeastCertain_s = 0.012;   // the range is sixteen times as wide
-constexpr double kWidth_px = 2;             // of the robust loss
-constexpr std::size_t kMostRays = 30;       // of a pair
+constexpr double kStep_s = 0.005;          // of the grid: much less than a turn takes
+constexpr double kLeastCertain_s = 0.012;  // the range is sixteen times as wide
+constexpr double kWidth_px = 2;            // of the robust loss
+constexpr std::size_t kMostRays = 30;      // of a pair
 constexpr std::size_t kLeastRays = 12;
 constexpr std::size_t kLeastPairs = 10;
-constexpr double kGaps_s[] = {0.1, 0.3};    // between the frames of a pair
+constexpr double kGaps_s[] = {0.1, 0.3};  // between the frames of a pair
 constexpr double kLargestImuGap_s = 0.05;
 
 /// Rotation of the body since the first sample, at any time.
@@ -91,8 +91,7 @@ std::vector<TimedPair> makePairs(const std::vector<FrameTracks>& frames, const G
       if (b >= frames.size() || frames[b].t_ns - frames[a].t_ns > nanoseconds(2 * gap_s)) continue;
       TimedPair timed{frames[a].t_ns, frames[b].t_ns, {}};
       if (!path.covers(timed.a_ns - margin, timed.b_ns + margin)) continue;
-      timed.pair.d_theta_d_bias =
-          -1e-9 * static_cast<double>(timed.b_ns - timed.a_ns) * Eigen::Matrix3d::Identity();
+      timed.pair.d_theta_d_bias = -1e-9 * static_cast<double>(timed.b_ns - timed.a_ns) * Eigen::Matrix3d::Identity();
       addRays(frames[a], frames[b], rig.T_b_c.q, timed.pair);
       if (timed.pair.rays.size() >= kLeastRays) pairs.push_back(std::move(timed));
     }
@@ -147,7 +146,8 @@ ClockOffset findClockOffset(const std::vector<FrameTracks>& frames, const ImuBat
   const int steps = static_cast<int>(std::lround(kLargestClockOffset_s / kStep_s));
   std::vector<EpipolarSystem> grid;
   for (int k = -steps; k <= steps; ++k) grid.push_back(fit.at(k * kStep_s));
-  const auto best = std::min_element(grid.begin(), grid.end(), [](const auto& x, const auto& y) { return x.cost < y.cost; });
+  const auto best =
+      std::min_element(grid.begin(), grid.end(), [](const auto& x, const auto& y) { return x.cost < y.cost; });
   const auto at = best - grid.begin();
   found.rms_px = focal * std::sqrt(best->sum / best->weights);
   if (at == 0 || best + 1 == grid.end()) return found;

@@ -24,6 +24,8 @@ namespace lintel {
 
 namespace {
 
+constexpr double kKnownOffset_s = 0.002;
+
 /// Mean and standard deviation (norm over the axes) of the buffer's IMU.
 struct ImuStatistics {
   Eigen::Vector3d mean_gyro = Eigen::Vector3d::Zero(), mean_accel = Eigen::Vector3d::Zero();
@@ -181,9 +183,12 @@ double Initializer::misfitOf(SlidingWindow& window) const {
 }
 
 void Initializer::adjust(SlidingWindow& window) const {
-  setBiasPrior(window, MotionBlock::Zero(), params_.initializer.bias_gyro_sigma, std::numeric_limits<double>::infinity());
+  setBiasPrior(window, MotionBlock::Zero(), params_.initializer.bias_gyro_sigma,
+               std::numeric_limits<double>::infinity());
   CalibrationParams frozen = params_.calibration;
-  frozen.refine_extrinsics = frozen.refine_camera = frozen.refine_time_offset = false;
+  frozen.refine_extrinsics = frozen.refine_camera = false;
+  // an offset that is known from a search alone, to some milliseconds, would pass for a bias
+  frozen.refine_time_offset &= frozen.time_offset_sigma_s > kKnownOffset_s;
   LandmarkParams loose = params_.landmarks;
   // The first poses are rough: their errors are angles, and so are these limits.
   const double scale = pixelScale(window.camera());
@@ -195,6 +200,7 @@ void Initializer::adjust(SlidingWindow& window) const {
     factors.addImu();
     factors.addPoints();
     factors.addGauge();
+    if (frozen.refine_time_offset) factors.addCalibrationPriors(frozen, T_b_c_calibrated_);
     solveWindow(window, factors.factors(), frozen, {20});
     loose.point_max_error_px = round == 0 ? 8 * scale : params_.landmarks.point_max_error_px;
     for (auto& [id, track] : window.points)

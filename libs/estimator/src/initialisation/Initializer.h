@@ -39,8 +39,8 @@ class Initializer {
   Pose T_b_c_calibrated_;
 };
 
-/// Accelerometer bias that a start must not have, and not come to while it is on trial [m/s^2]: four standard deviations
-/// of what is known of it beforehand. A wrong gyro bias or scale shows here first.
+/// Accelerometer bias that a start must not have, and not come to while it is on trial [m/s^2]: four standard
+/// deviations of what is known of it beforehand. A wrong gyro bias or scale shows here first.
 inline double trialBiasAccel(const InitializerParams& params) { return 4 * params.bias_accel_sigma; }
 
 /// Median motion of points between two frames of the window in pixels; `rotation_free` takes the gyro's rotation out.

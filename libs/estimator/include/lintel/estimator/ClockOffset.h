@@ -16,8 +16,8 @@ struct ClockOffset {
   double sigma_s = 0;       ///< its standard deviation
   Eigen::Vector3d bias_gyro = Eigen::Vector3d::Zero();        ///< of the whole span [rad/s]
   Eigen::Vector3d bias_gyro_sigma = Eigen::Vector3d::Zero();  ///< its standard deviations
-  double rms_px = 0;        ///< what remains of the epipolar constraint at the offset
-  double rms_still_px = 0;  ///< the same if the gyroscope said nothing
+  double rms_px = 0;                                          ///< what remains of the epipolar constraint at the offset
+  double rms_still_px = 0;                                    ///< the same if the gyroscope said nothing
 };
 
 constexpr double kLargestClockOffset_s = 0.1;

@@ -48,7 +48,7 @@ struct OdometryResult {
   double time_offset_s = 0;
   OdometryStatistics statistics;
   std::vector<std::string> remarks;  ///< what the recording says of itself and was corrected, in words
-  std::string verdict;               ///< why trajectory and map must not be trusted; empty when nothing contradicts them
+  std::string verdict;  ///< why trajectory and map must not be trusted; empty when nothing contradicts them
   bool cancelled =
       false;          ///< RunOptions::cancelled ended the run: trajectory and map are those of the frames until then
   std::string error;  ///< why the recording ended early; empty when it was read to its end or cancelled
