@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "RunCheck.h"
 
-#include <algorithm>
 #include <cstdio>
 
 namespace lintel {
@@ -30,7 +29,7 @@ void RunCheck::watchSpeed(const WindowUpdate& update) {
   if (update.t_ns - speeds_.front().t_ns < kSpan_ns) return;
   const double dt = 1e-9 * static_cast<double>(update.t_ns - speeds_.front().t_ns);
   const double acceleration = (update.v_w_b - speeds_.front().v_w_b).norm() / dt;
-  largest_acceleration_ = std::max(largest_acceleration_, acceleration);
+  if (!(acceleration <= largest_acceleration_)) largest_acceleration_ = acceleration;  // NaN, too
   speeds_.pop_front();
 }
 

@@ -1,0 +1,60 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "RunCheck.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+namespace lintel {
+namespace {
+
+/// Ten seconds at 10 Hz; the estimate gains speed steadily, the accelerometer shows `gravity`.
+std::string verdictOf(double gravity, double acceleration, std::size_t resets = 0, double share_with_pose = 1) {
+  RunCheck check{Rig{}};
+  OdometryStatistics statistics;
+  std::int64_t t_ns = 1'000'000'000;
+  statistics.first_frame_ns = t_ns;
+  statistics.first_pose_s = 0;
+  for (int frame = 0; frame < 100; ++frame) {
+    ImuBatch imu;
+    for (int i = 0; i <= 20; ++i) {
+      ImuSample sample;
+      sample.t_ns = t_ns + 5'000'000 * i;
+      sample.accel.z() = gravity + 0.02 * std::sin(97.0 * (i + 20 * frame));
+      imu.push_back(sample);
+    }
+    t_ns += 100'000'000;
+    WindowUpdate update;
+    update.t_ns = t_ns;
+    update.status = EstimatorStatus::kTracking;
+    update.v_w_b.x() = acceleration * 0.1 * frame;
+    check.add(imu, update);
+    ++statistics.frames;
+  }
+  statistics.last_frame_ns = t_ns;
+  statistics.resets = resets;
+  statistics.frames_with_pose = static_cast<std::size_t>(share_with_pose * 100);
+  return check.verdict(statistics);
+}
+
+TEST(RunCheck, AGoodRunHasNoVerdict) {
+  EXPECT_EQ(verdictOf(9.81, 0), "");
+  EXPECT_EQ(verdictOf(9.6, 1), "");
+  EXPECT_EQ(verdictOf(9.81, 0, 1, 0.9), "");
+}
+
+TEST(RunCheck, AWrongGravityIsNamedFirst) {
+  EXPECT_NE(verdictOf(1, 40).find("in g"), std::string::npos) << verdictOf(1, 40);
+}
+
+TEST(RunCheck, ADivergedRunIsNoGoodOne) {
+  EXPECT_NE(verdictOf(9.81, 8).find("diverged"), std::string::npos) << verdictOf(9.81, 8);
+  EXPECT_NE(verdictOf(9.81, std::nan("")), "");
+}
+
+TEST(RunCheck, StartsThatDoNotLast) {
+  EXPECT_NE(verdictOf(9.81, 0, 2, 0.2).find("did not last"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace lintel
