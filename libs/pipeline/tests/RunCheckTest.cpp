@@ -52,9 +52,7 @@ TEST(RunCheck, ADivergedRunIsNoGoodOne) {
   EXPECT_NE(verdictOf(9.81, std::nan("")), "");
 }
 
-TEST(RunCheck, StartsThatDoNotLast) {
-  EXPECT_NE(verdictOf(9.81, 0, 2, 0.2).find("did not last"), std::string::npos);
-}
+TEST(RunCheck, StartsThatDoNotLast) { EXPECT_NE(verdictOf(9.81, 0, 2, 0.2).find("did not last"), std::string::npos); }
 
 }  // namespace
 }  // namespace lintel

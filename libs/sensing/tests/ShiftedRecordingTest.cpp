@@ -20,7 +20,8 @@ class Counting : public Recording {
     const int t_ms = 1000 + 50 * next_++;
     FrameWithImu step;
     step.frame.t_ns = t_ms * kMs;
-    for (int t = t_ms - (t_ms == 1000 ? 500 : 50); t <= t_ms; t += 5) step.imu.push_back({t * kMs, {double(t), 0, 0}, {}});
+    for (int t = t_ms - (t_ms == 1000 ? 500 : 50); t <= t_ms; t += 5)
+      step.imu.push_back({t * kMs, {double(t), 0, 0}, {}});
     return step;
   }
   std::size_t expectedFrames() const override { return static_cast<std::size_t>(frames_); }
