@@ -57,8 +57,10 @@ build() {
   if [ ! -f "build/$preset/build.ninja" ]; then
     say "Configuring build/$preset"
     launcher=
-    command -v ccache >/dev/null 2>&1 && launcher=-DCMAKE_CXX_COMPILER_LAUNCHER=ccache
-    cmake --preset "$preset" $launcher || die "configuring failed; see above"
+    # what ccache's manual asks for where there are precompiled headers
+    command -v ccache >/dev/null 2>&1 &&
+      launcher='-DCMAKE_CXX_COMPILER_LAUNCHER=env;CCACHE_SLOPPINESS=pch_defines,time_macros;ccache'
+    cmake --preset "$preset" ${launcher:+"$launcher"} || die "configuring failed; see above"
   fi
   say "Building build/$preset"
   cmake --build "build/$preset" ${1:+--target "$@"} || die "the build failed; see above"
