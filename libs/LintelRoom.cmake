@@ -5,15 +5,19 @@ function(lintel_warnings TARGET)
   target_compile_options(${TARGET} PRIVATE -Wall -Wextra -Wpedantic -Wshadow -Wnon-virtual-dtor -Woverloaded-virtual)
 endfunction()
 
-# Headers that most files read, and that take longer to read than the rest of an average file: one precompiled header
-# for all libraries, one with the test framework for all tests. Files include what they need all the same, and build
-# with CMAKE_DISABLE_PRECOMPILE_HEADERS=ON. The first room and its tests make them, the others use them.
+# Headers that most files read, and that take longer to read than the rest of an average file. The first room makes a
+# precompiled header of them that all libraries use, and its tests make one for all tests. Files include what they need
+# all the same: the presets turn LINTEL_PRECOMPILE on, and packages are built without.
+option(LINTEL_PRECOMPILE "Build faster by precompiled headers" OFF)
 set(LINTEL_PRECOMPILED
   <algorithm> <array> <cmath> <cstdint> <filesystem> <fstream> <functional> <limits> <map> <memory> <numeric> <optional>
   <set> <sstream> <stdexcept> <string> <unordered_map> <utility> <vector> <Eigen/Core> <Eigen/Geometry>)
 
 # lintel_precompile(TARGET FIRST HEADER…): TARGET makes the precompiled header if it is FIRST, else uses that of FIRST.
 function(lintel_precompile TARGET FIRST)
+  if(NOT LINTEL_PRECOMPILE)
+    return()
+  endif()
   if("${TARGET}" STREQUAL "${FIRST}")
     target_precompile_headers(${TARGET} PRIVATE ${ARGN})
   else()
