@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "ImageLine.h"
 
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 
 #include "lintel/core/ParamRange.h"
+#include "lintel/geometry/SmallMatrices.h"
 
 namespace lintel {
 namespace {
@@ -18,7 +18,7 @@ void totalLeastSquares(const std::vector<Eigen::Vector2d>& points, RobustLine& f
   Eigen::Matrix2d scatter = Eigen::Matrix2d::Zero();
   for (std::size_t i = 0; i < points.size(); ++i)
     if (fit.inlier[i]) scatter += (points[i] - mean) * (points[i] - mean).transpose();
-  const Eigen::Vector2d d = Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d>(scatter).eigenvectors().col(1);
+  const Eigen::Vector2d d = symmetricEigen(scatter).vectors.col(1);
   std::size_t first = 0, last = points.size() - 1;
   while (!fit.inlier[first]) ++first;
   while (!fit.inlier[last]) --last;

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "lintel/estimator/ClockOffset.h"
 
-#include <Eigen/Cholesky>
 #include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
@@ -10,6 +9,7 @@
 
 #include "initialisation/EpipolarRotation.h"
 #include "lintel/geometry/Rotation.h"
+#include "lintel/geometry/SmallMatrices.h"
 
 namespace lintel {
 
@@ -113,7 +113,7 @@ class Fit {
     EpipolarSystem system;
     for (int round = 0; round < 3; ++round) {
       system = epipolarSystem(turned_, bias_, width_rad_);
-      if (round < 2) bias_ -= system.H.ldlt().solve(system.b);
+      if (round < 2) bias_ -= solveLdlt(system.H, system.b);
     }
     return system;
   }

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "initialisation/GravityAlignment.h"
 
-#include <Eigen/Cholesky>
-#include <Eigen/Eigenvalues>
 #include <Eigen/LU>
 #include <cmath>
 #include <map>
@@ -10,6 +8,7 @@
 #include "initialisation/GyroAlignment.h"
 #include "lintel/geometry/Frames.h"
 #include "lintel/geometry/Rotation.h"
+#include "lintel/geometry/SmallMatrices.h"
 
 namespace lintel {
 
@@ -128,8 +127,8 @@ Vector6 solveWithGravityNorm(const Matrix6& A, const Vector6& b) {
   const Eigen::Matrix3d Avv_inverse = A.topLeftCorner<3, 3>().inverse(), Agv = A.bottomLeftCorner<3, 3>();
   const Eigen::Matrix3d D = A.bottomRightCorner<3, 3>() - Agv * Avv_inverse * Agv.transpose();
   const Eigen::Vector3d d = b.tail<3>() - Agv * Avv_inverse * b.head<3>();
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(0.5 * (D + D.transpose()));
-  const Eigen::Vector3d e = solver.eigenvectors().transpose() * d, l = solver.eigenvalues();
+  const SymmetricEigen<3> eigen = symmetricEigen<3>(0.5 * (D + D.transpose()));
+  const Eigen::Vector3d e = eigen.vectors.transpose() * d, l = eigen.values;
   const auto normAt = [&](double mu) { return (e.array() / (l.array() - mu)).matrix().norm(); };
   double high = l[0] - 1e-12 * std::max(1.0, std::abs(l[0])), span = std::max(1e-6, std::abs(l[2]));
   double low = l[0] - span;
@@ -140,7 +139,7 @@ Vector6 solveWithGravityNorm(const Matrix6& A, const Vector6& b) {
   }
   const double mu = 0.5 * (low + high);
   Vector6 x;
-  x.tail<3>() = solver.eigenvectors() * (e.array() / (l.array() - mu)).matrix();
+  x.tail<3>() = eigen.vectors * (e.array() / (l.array() - mu)).matrix();
   x.head<3>() = Avv_inverse * (b.head<3>() - Agv.transpose() * x.tail<3>());
   return x;
 }
@@ -163,7 +162,7 @@ GravityAlignment alignGravity(const SlidingWindow& window) {
       A -= h * h.transpose() / hh;
       b -= h * (hb / hh);
     }
-    if (Eigen::SelfAdjointEigenSolver<Matrix6>(A).eigenvalues()[0] < 1e-14) return result;
+    if (symmetricEigen<Eigen::Dynamic>(A).values[0] < 1e-14) return result;
     x = solveWithGravityNorm(A, b);
     if (!x.allFinite()) return result;
     for (PointSystem& point : points) reweigh(point, motions, x, kWidth_rad * (round < 2 ? 4 : 1));

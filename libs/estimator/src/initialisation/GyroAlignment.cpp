@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "initialisation/GyroAlignment.h"
 
-#include <Eigen/Cholesky>
 #include <cmath>
 #include <map>
 
 #include "initialisation/EpipolarRotation.h"
 #include "lintel/geometry/Rotation.h"
+#include "lintel/geometry/SmallMatrices.h"
 
 namespace lintel {
 
@@ -52,7 +52,7 @@ GyroAlignment alignGyro(const SlidingWindow& window) {
   if (pairs.size() < 5) return result;
   for (int iteration = 0; iteration < 15; ++iteration) {
     const EpipolarSystem system = epipolarSystem(pairs, result.bias_gyro, kWidth_rad);
-    const Eigen::Vector3d step = -system.H.ldlt().solve(system.b);
+    const Eigen::Vector3d step = -solveLdlt(system.H, system.b);
     result.bias_gyro += step;
     result.rms_rad = std::sqrt(system.sum / system.weights);
     if (step.norm() < 1e-6) break;
