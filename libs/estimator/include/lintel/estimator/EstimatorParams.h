@@ -110,7 +110,7 @@ struct DegeneracyParams {
 /// The way into the window; see Initializer.
 struct InitializerParams {
   int min_frames = 10;               ///< window frames (estimator rate) before the first attempt
-  int max_frames = 20;               ///< older ones are dropped
+  int max_frames = 30;               ///< older ones are dropped; three seconds of a slow motion show scale and biases
   double min_parallax_px = 12;       ///< rotation-compensated, median, over the buffer; below: static or waiting
   double max_error_px = 2.0;         ///< median reprojection error of an accepted start
   double max_scale_sigma = 0.05;     ///< relative standard deviation of the scale of an accepted start
