@@ -19,6 +19,7 @@
 #include "window/KeyframeSelection.h"
 #include "window/OutlierRejection.h"
 #include "window/WindowMarginalization.h"
+#include "window/WindowMove.h"
 #include "window/WindowRetirement.h"
 #include "window/WindowSigma.h"
 
@@ -186,12 +187,8 @@ void Estimator::Impl::initialise(WindowUpdate& update) {
 }
 
 void Estimator::Impl::moveToAnchor() {
-  const Pose T{Eigen::Quaterniond(Eigen::AngleAxisd(yawOf(anchor_T_w_b_.q), Eigen::Vector3d::UnitZ())),
-               anchor_T_w_b_.p};
-  for (WindowFrame& frame : window_.frames) {
-    frame.pose = toBlock(T * frame.T_w_b());
-    frame.motion.segment<3>(kVelocityAt) = T.q * velocityOf(frame.motion.data());
-  }
+  const Eigen::AngleAxisd yaw(yawOf(anchor_T_w_b_.q), Eigen::Vector3d::UnitZ());
+  moveWindow(window_, {Eigen::Quaterniond(yaw), anchor_T_w_b_.p});
 }
 
 void Estimator::Impl::track(WindowUpdate& update) {
