@@ -21,7 +21,7 @@ class Counting : public Recording {
     FrameWithImu step;
     step.frame.t_ns = t_ms * kMs;
     for (int t = t_ms - (t_ms == 1000 ? 500 : 50); t <= t_ms; t += 5)
-      step.imu.push_back({t * kMs, {double(t), 0, 0}, {}});
+      step.imu.push_back({t * kMs, {double(t), 0, 0}, Eigen::Vector3d::Zero()});
     return step;
   }
   std::size_t expectedFrames() const override { return static_cast<std::size_t>(frames_); }

@@ -9,13 +9,13 @@ namespace lintel {
 
 /// How observations become residuals.
 struct FactorParams {
-  double point_sigma_px = 0.7;    ///< standard deviation of a tracked point [px]
-  double point_loss_width = 1.5;  ///< Cauchy width, in standard deviations
-  double line_sigma_px = 1.0;     ///< scales LineObservation::sigma_px
-  double line_loss_width = 1.5;   ///< Cauchy width, in standard deviations
-  bool adaptive_weights = false;  ///< sigmas of points and lines follow their residuals, within twice and half
-  double gyro_noise_scale = 1.0;  ///< of the rig's noise density: calibrated densities omit vibration
-  double accel_noise_scale = 1.0;
+  double point_sigma_px = 0.7;     ///< standard deviation of a tracked point [px]
+  double point_loss_width = 1.5;   ///< Cauchy width, in standard deviations
+  double line_sigma_px = 1.0;      ///< scales LineObservation::sigma_px
+  double line_loss_width = 1.5;    ///< Cauchy width, in standard deviations
+  bool adaptive_weights = false;   ///< sigmas of points and lines follow their residuals, within twice and half
+  double gyro_noise_scale = 1.0;   ///< of the rig's noise density; 1: checked against the samples (NoiseMeter)
+  double accel_noise_scale = 1.0;  ///< the same; other than 1: the rig's density is taken as given
   double gyro_walk_scale = 1.0;
   double accel_walk_scale = 1.0;
 
