@@ -3,7 +3,7 @@
 // patch_flow FOLDER: CPU time and error of following patches with PatchFlow and with OpenCV's calcOpticalFlowPyrLK, on
 // the images of a folder (an EuRoC recording's mav0/cam0/data). Each image is followed into itself moved by a known
 // rotation and shift, with other noise, brightness and contrast, so that the true places are known. Both get the same
-// pyramids; the time is that of the pyramids of one image, with the derivatives that OpenCV wants, and of the flow.
+// pyramids; the time is that of the pyramids of one image, with the derivatives that OpenCV needs, and of the flow.
 #include <algorithm>
 #include <cstdio>
 #include <filesystem>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A program that estimates and does nothing else: the test looks at the libraries it is linked with.
+// A program that only uses the estimator: the test looks at the libraries it is linked with.
 #include "lintel/estimator/Estimator.h"
 
 int main() {

@@ -19,7 +19,7 @@ constexpr double kMaxError_px = 4;
 constexpr double kOverlap = 0.5;  ///< of the sighting
 constexpr int kAwayFrames = 3;
 constexpr int kSightings = 2;
-constexpr double kLong = 10;  ///< sightings of a line whose mean says something
+constexpr double kLong = 10;  ///< sightings of a line that give a useful mean
 constexpr double kMedianOfNormal = 0.6745;
 
 /// Of absolute values, over that of normally distributed ones of sigma 1; 0 without any.
@@ -64,19 +64,19 @@ void IdentityCheck::add(const FrameTracks& tracks) {
   const std::vector<SeenEdge> seen = edges_.seenAt(tracks.t_ns);
   const double focal = edges_.camera().meanFocal();
   for (const LineObservation& line : tracks.lines) {
-    Life& life = lives_[line.id];
-    ++life.frames;
+    Track& track = tracks_[line.id];
+    ++track.frames;
     const Eigen::Vector2d start = focal * edges_.camera().normalise(line.start_px),
                           end = focal * edges_.camera().normalise(line.end_px);
-    life.ends.push_back({tracks.t_ns, {start.x(), start.y(), end.x(), end.y()}});
+    track.ends.push_back({tracks.t_ns, {start.x(), start.y(), end.x(), end.y()}});
     const Anchor anchor = anchorOf(start, end, seen);
     double off = 0;
-    if (life.edge >= 0) {
-      const Eigen::Vector3d former = edges_.lineAt(life.edge, tracks.t_ns);
+    if (track.edge >= 0) {
+      const Eigen::Vector3d former = edges_.lineAt(track.edge, tracks.t_ns);
       off = std::max(std::abs(former.dot(start.homogeneous())), std::abs(former.dot(end.homogeneous())));
     }
     if (anchor.edge < 0) {
-      life.away += off > kAway_px;
+      track.away += off > kAway_px;
       continue;
     }
     if (anchor.isolated) {
@@ -84,21 +84,21 @@ void IdentityCheck::add(const FrameTracks& tracks) {
       errors_[line.id].push_back({anchor.end_px, line.sigma_px});
       if (std::max(std::abs(anchor.start_px), std::abs(anchor.end_px)) > kOn_px) continue;
     }
-    ++life.anchored;
-    if (life.edge >= 0 && life.edge != anchor.edge && off > kAway_px &&
-        sightingsOnlyOn(life, life.edge, anchor.edge) >= kSightings) {
-      life.switched = true;
-      switches_.push_back({tracks.t_ns, line.id, life.edge, anchor.edge, 0.5 * (line.start_px + line.end_px), off,
-                           historyOf(life, life.edge, 12)});
+    ++track.anchored;
+    if (track.edge >= 0 && track.edge != anchor.edge && off > kAway_px &&
+        sightingsOnlyOn(track, track.edge, anchor.edge) >= kSightings) {
+      track.switched = true;
+      switches_.push_back({tracks.t_ns, line.id, track.edge, anchor.edge, 0.5 * (line.start_px + line.end_px), off,
+                           historyOf(track, track.edge, 12)});
     }
-    life.edge = anchor.edge;
-    life.away = 0;
+    track.edge = anchor.edge;
+    track.away = 0;
   }
 }
 
-int IdentityCheck::sightingsOnlyOn(const Life& life, int edge, int other) const {
+int IdentityCheck::sightingsOnlyOn(const Track& track, int edge, int other) const {
   int sightings = 0;
-  for (const auto& [t_ns, ends] : life.ends) {
+  for (const auto& [t_ns, ends] : track.ends) {
     const auto off = [&, time = t_ns, at = ends](int id) {
       const Eigen::Vector3d line = edges_.lineAt(id, time);
       return std::max(std::abs(line.dot(at.head<2>().homogeneous())), std::abs(line.dot(at.tail<2>().homogeneous())));
@@ -108,10 +108,10 @@ int IdentityCheck::sightingsOnlyOn(const Life& life, int edge, int other) const 
   return sightings;
 }
 
-std::string IdentityCheck::historyOf(const Life& life, int edge, std::size_t sightings) const {
+std::string IdentityCheck::historyOf(const Track& track, int edge, std::size_t sightings) const {
   std::string text;
-  for (std::size_t i = life.ends.size() - std::min(sightings, life.ends.size()); i < life.ends.size(); ++i) {
-    const auto& [t_ns, ends] = life.ends[i];
+  for (std::size_t i = track.ends.size() - std::min(sightings, track.ends.size()); i < track.ends.size(); ++i) {
+    const auto& [t_ns, ends] = track.ends[i];
     const Eigen::Vector3d line = edges_.lineAt(edge, t_ns);
     char cell[48];
     std::snprintf(cell, sizeof cell, " %.1f/%.1f", line.dot(ends.head<2>().homogeneous()),
@@ -123,16 +123,16 @@ std::string IdentityCheck::historyOf(const Life& life, int edge, std::size_t sig
 
 int IdentityCheck::anchored() const {
   return static_cast<int>(
-      std::count_if(lives_.begin(), lives_.end(), [](const auto& entry) { return entry.second.anchored >= 2; }));
+      std::count_if(tracks_.begin(), tracks_.end(), [](const auto& entry) { return entry.second.anchored >= 2; }));
 }
 
 int IdentityCheck::switched() const {
   return static_cast<int>(
-      std::count_if(lives_.begin(), lives_.end(), [](const auto& entry) { return entry.second.switched; }));
+      std::count_if(tracks_.begin(), tracks_.end(), [](const auto& entry) { return entry.second.switched; }));
 }
 
 int IdentityCheck::left() const {
-  return static_cast<int>(std::count_if(lives_.begin(), lives_.end(), [](const auto& entry) {
+  return static_cast<int>(std::count_if(tracks_.begin(), tracks_.end(), [](const auto& entry) {
     return !entry.second.switched && entry.second.anchored >= 2 && entry.second.away >= kAwayFrames;
   }));
 }
@@ -165,7 +165,7 @@ void IdentityCheck::printSwitches(std::ostream& out) const {
   for (const Switch& s : switches_)
     out << "  " << s.t_ns << " line " << s.id << " from edge " << s.from << " (" << edges_.kind(s.from) << ") to "
         << s.to << " (" << edges_.kind(s.to) << ") at " << static_cast<int>(s.middle_px.x()) << ","
-        << static_cast<int>(s.middle_px.y()) << ", " << s.off_px << " px off, seen " << lives_.at(s.id).frames
+        << static_cast<int>(s.middle_px.y()) << ", " << s.off_px << " px off, seen " << tracks_.at(s.id).frames
         << " frames:" << s.history << "\n";
 }
 

@@ -13,7 +13,7 @@
 
 namespace lintel::truth {
 
-/// Holds tracked lines against true edges.
+/// Compares tracked lines with true edges.
 ///
 /// A sighting is *anchored* to the true edge nearest to both of its ends, when that is within 1.5 px, shows along at
 /// least half of the sighting, and the next other edge is 2 px further off. An identity *switches* when it is anchored
@@ -28,7 +28,7 @@ class IdentityCheck {
 
   void add(const FrameTracks& tracks);
 
-  int identities() const { return static_cast<int>(lives_.size()); }
+  int identities() const { return static_cast<int>(tracks_.size()); }
   int anchored() const;  ///< identities anchored in at least two frames
   int switched() const;  ///< of them with a switch
   int left() const;      ///< of them that left their edge for at least three frames, without a switch
@@ -36,9 +36,9 @@ class IdentityCheck {
   /// Distances of ends from the true edge over their sigma, of sightings without another true edge within 6 px.
   struct SigmaRatios {
     std::size_t count = 0;
-    double typical = 0;   ///< median / 0.6745: 1 when honest and normal
+    double typical = 0;   ///< median / 0.6745: 1 if normally distributed with the given sigmas
     double rms = 0;       ///< of those below 4 px
-    double beyond_3 = 0;  ///< share beyond 3 sigma; 0.003 when honest and normal
+    double beyond_3 = 0;  ///< share beyond 3 sigma; 0.003 if normally distributed
     double error_px = 0;  ///< median / 0.6745 of the distances themselves
     double within_typical = 0,
            within_rms = 0;  ///< the same of what is left when each line's mean distance is taken away
@@ -49,7 +49,7 @@ class IdentityCheck {
   void printSwitches(std::ostream& out) const;
 
  private:
-  struct Life {
+  struct Track {
     int frames = 0, anchored = 0, edge = -1, away = 0;
     bool switched = false;
     std::vector<std::pair<std::int64_t, Eigen::Vector4d>> ends;  ///< of every sighting, undistorted pixels
@@ -70,12 +70,12 @@ class IdentityCheck {
   Anchor anchorOf(const Eigen::Vector2d& start, const Eigen::Vector2d& end, const std::vector<SeenEdge>& seen) const;
 
   /// Number of sightings on `edge` and away from `other`.
-  int sightingsOnlyOn(const Life& life, int edge, int other) const;
+  int sightingsOnlyOn(const Track& track, int edge, int other) const;
   /// Signed distances of the last sightings' ends from a true edge.
-  std::string historyOf(const Life& life, int edge, std::size_t sightings) const;
+  std::string historyOf(const Track& track, int edge, std::size_t sightings) const;
 
   const TrueEdges& edges_;
-  std::map<TrackId, Life> lives_;
+  std::map<TrackId, Track> tracks_;
   std::vector<Switch> switches_;
   struct Error {
     double px, sigma_px;

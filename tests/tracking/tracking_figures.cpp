@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// tracking_figures RECORDING [key=value ...]: the front end alone on a recording, and what it did, measured. With true
+// tracking_figures RECORDING [key=value ...]: runs the front end on a recording and measures its results. With true
 // poses: errors of points (PointErrors.h). With true edges, too (rendered recordings): identity switches of lines and
-// honesty of their sigma_px (IdentityCheck.h). Keys: see setKey(); lines=0 tracks points only.
+// calibration of their sigma_px (IdentityCheck.h). Keys: see setKey(); lines=0 tracks points only.
 #include <time.h>
 
 #include <cstdio>

@@ -58,7 +58,7 @@ std::string seconds(std::int64_t t_ns) {
   return text;
 }
 
-/// The last line that says something.
+/// The last line that is not empty.
 std::string lastLine(const std::string& text) {
   const std::size_t end = text.find_last_not_of("\n ");
   if (end == std::string::npos) return "";
@@ -110,7 +110,7 @@ std::string BenchRunner::runProgram(const std::vector<std::string>& words, const
   const int signal = result.exit_code - 128;
   if (result.exit_code == 127)
     throw std::runtime_error(command[0] + ": cannot be started; it belongs beside lintel-bench");
-  if (signal == SIGINT || signal == SIGTERM || signal == SIGHUP)  // somebody stops the work: no result
+  if (signal == SIGINT || signal == SIGTERM || signal == SIGHUP)  // stopped from outside: no result
     throw std::runtime_error(words[0] + " was stopped; start lintel-bench again to go on");
   const std::string reason = lastLine(result.errors);
   if (signal > 0)

@@ -25,7 +25,7 @@ namespace {
   throw std::runtime_error(what + ": " + std::strerror(errno) + "; free what the system has run out of");
 }
 
-/// A file without a name. Unlike a pipe it needs nobody who reads while another writes.
+/// A file without a name. Unlike a pipe it needs no concurrent reader.
 class ScratchFile {
  public:
   ScratchFile() : file_(std::tmpfile()) {
@@ -78,7 +78,7 @@ struct Descriptors {
 /// Between fork and exec: only calls that are safe while other threads hold locks.
 [[noreturn]] void becomeChild(const Descriptors& use, pid_t parent, char* const* command, char* const* environment) {
   prctl(PR_SET_PDEATHSIG, SIGKILL);
-  if (getppid() != parent) _exit(127);  // it died before prctl
+  if (getppid() != parent) _exit(127);  // the parent ended before prctl
   dup2(use.input, STDIN_FILENO);
   dup2(use.output, STDOUT_FILENO);
   dup2(use.errors, STDERR_FILENO);

@@ -12,11 +12,11 @@ namespace lintel {
 /// Middles of the pieces of about `step_m` that a segment is cut into, at least one.
 std::vector<Eigen::Vector3d> piecesOf(const Segment3& segment, double step_m);
 
-/// What a segment of the map has to do with the true edges.
+/// How a segment of the map corresponds to the true edges.
 struct LineMatch {
   std::vector<double>
       distances_m;  ///< of every piece to the nearest edge of about its direction; infinite if none is near
-  std::optional<std::size_t> edge;  ///< index of the edge that the segment is a picture of
+  std::optional<std::size_t> edge;  ///< index of the edge that the segment is matched to
 };
 
 LineMatch matchLine(const Segment3& segment_w, const std::vector<TrueLine>& truth, const LineErrorParams& params);

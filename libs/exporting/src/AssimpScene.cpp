@@ -110,7 +110,7 @@ class SceneBuilder {
     for (const DrawnPart& part : drawing_.parts) {
       if (part.layer != MapLayer::kLines) addPart(part, *root);
     }
-    if (materials_.empty()) materialOf(true);  // assimp wants one even for an empty map
+    if (materials_.empty()) materialOf(true);  // assimp needs one even for an empty map
     scene->mNumMeshes = static_cast<unsigned>(meshes_.size());
     scene->mMeshes = meshes_.empty() ? nullptr : new aiMesh*[meshes_.size()];
     std::copy(meshes_.begin(), meshes_.end(), scene->mMeshes);

@@ -117,7 +117,7 @@ void writeMaterials(Json& json) {
   if (any_unlit) json["extensionsUsed"] = Json::array({"KHR_materials_unlit"});
 }
 
-/// glTF knows no empty lists: an empty map is a scene of nodes only.
+/// glTF allows no empty lists: an empty map is a scene of nodes only.
 void removeEmptyLists(Json& json) {
   for (const char* list : {"buffers", "bufferViews", "accessors", "meshes"}) {
     if (json.contains(list) && json[list].empty()) json.erase(list);

@@ -16,7 +16,7 @@ class GzipStream {
   GzipStream(const GzipStream&) = delete;
   GzipStream& operator=(const GzipStream&) = delete;
 
-  /// What mrpt::serialization::archiveFrom() asks of a stream; this one cannot be read.
+  /// The interface that mrpt::serialization::archiveFrom() needs; this stream cannot be read.
   std::size_t Write(const void* data, std::size_t size);
   std::size_t Read(void*, std::size_t) { return 0; }
   std::string getStreamDescription() const { return "gzip in memory"; }

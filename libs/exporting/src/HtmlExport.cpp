@@ -46,7 +46,7 @@ std::string cssColour(Rgb c) {
   return text;
 }
 
-/// A number of the page's pop-up, rounded to what one reads; null if not finite.
+/// A number of the page's pop-up, rounded for reading; null if not finite.
 Json rounded(double v) {
   if (!std::isfinite(v)) return nullptr;
   char text[32];
@@ -162,7 +162,7 @@ std::string escaped(const std::string& text) {
         break;
       case '[':
         out += "&#91;";
-        break;  // no name can look like one of the page's marks
+        break;  // no name can equal one of the page's marks
       default:
         out += c;
     }

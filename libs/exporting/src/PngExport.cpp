@@ -15,7 +15,7 @@ namespace {
 
 constexpr int kWidth = 1600, kAboveHeight = 1000, kHalfWidth = kWidth / 2, kBelowHeight = 511, kFootHeight = 50;
 
-/// What the views from outside show: the core of the lines and the path among them, without runaways of either.
+/// What the views from outside show: the core of the lines and the path among them, without outliers of either.
 Eigen::AlignedBox3d shownBox(const Drawing& drawing) {
   Eigen::AlignedBox3d box = drawing.core, path;
   for (Eigen::Index axis = 0; axis < 3; ++axis) {
@@ -44,7 +44,7 @@ const Pose* firstPose(const LineMap& map) {
   return nullptr;
 }
 
-/// Frusta further apart than they are deep: a path full of them hides itself.
+/// Frusta further apart than they are deep: closer ones would hide the path.
 Drawing withFewerFrusta(const Drawing& drawing) {
   Drawing thinned = drawing;
   for (DrawnPart& part : thinned.parts) {

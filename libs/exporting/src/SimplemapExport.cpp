@@ -20,7 +20,7 @@ namespace lintel {
 namespace {
 
 constexpr double kSpacing_m = 0.05;     // along a line; MOLA's local maps are no finer
-constexpr double kMostAlongALine = 50;  // a runaway line does not fill a cloud
+constexpr double kMostAlongALine = 50;  // a very long wrong line does not fill a cloud
 
 /// What a keyframe saw of the drawing.
 struct Seen {

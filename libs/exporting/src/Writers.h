@@ -16,7 +16,7 @@ struct OutputFile {
 using OutputFiles = std::vector<OutputFile>;
 
 // One writer per form, each in a file of its name. The first file has the name `path`; others stand beside it.
-// Throw ExportError for what only they can know.
+// Throw ExportError for errors of their form.
 OutputFiles csvFiles(const Drawing& drawing, const std::string& path);        // table of lines
 OutputFiles jsonFiles(const Drawing& drawing, const std::string& path);       // the full data
 OutputFiles objFiles(const Drawing& drawing, const std::string& path);        // with .mtl

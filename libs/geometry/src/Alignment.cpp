@@ -39,7 +39,7 @@ Similarity alignUmeyama(const Eigen::Ref<const Eigen::Matrix3Xd>& from, const Ei
   const Eigen::Matrix4d M = Eigen::umeyama(from, to, with_scale && moves);
   Similarity result;
   if (with_scale && moves) result.scale = std::cbrt(M.topLeftCorner<3, 3>().determinant());
-  if (!(result.scale > 0)) {  // the partners do not move: everything shrinks onto their mean
+  if (!(result.scale > 0)) {  // the partners do not move: the scale is zero
     result.scale = 0;
     result.T_a_b.p = to.rowwise().mean();
     return result;

@@ -56,7 +56,7 @@ TEST(Alignment, MirrorImagesAreNotTurnedInsideOut) {
   EXPECT_NEAR(alignPositions(AlignmentKind::kSe3, kCorner, mirrored).T_a_b.R().determinant(), 1, 1e-14);
 }
 
-TEST(Alignment, YawLeavesTiltAlone) {
+TEST(Alignment, YawDoesNotChangeTilt) {
   Similarity tilted;
   tilted.T_a_b = {expRotation({0, 0, 1.2}) * expRotation({0.1, 0, 0}), {4, 5, 6}};
   const auto [from, to] = disturbed(tilted);

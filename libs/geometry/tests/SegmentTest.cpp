@@ -28,7 +28,7 @@ TEST(Segment, LengthDirectionMidpoint) {
   EXPECT_EQ(segment.midpoint(), Eigen::Vector3d(1, 2.5, 3));
 }
 
-TEST(Segment, LineAngleKnowsNoSign) {
+TEST(Segment, LineAngleHasNoSign) {
   EXPECT_DOUBLE_EQ(lineAngle({1, 0, 0}, {-3, 0, 0}), 0);
   EXPECT_DOUBLE_EQ(lineAngle({1, 0, 0}, {2, 2, 0}), M_PI / 4);
   EXPECT_DOUBLE_EQ(lineAngle({1, 0, 0}, {-2, 2, 0}), M_PI / 4);

@@ -9,7 +9,7 @@ namespace lintel {
 
 namespace {
 
-/// Holds the length of a homogeneous point, which nothing observes. Instead of a manifold: all landmarks then have
+/// Holds the length of a homogeneous point, which is not observable. Instead of a manifold: all landmarks then have
 /// tangents of four and residuals of two, for which Ceres has code of fixed size (and hence the second, empty
 /// residual).
 class UnitLength final : public ceres::SizedCostFunction<2, kPointSize> {
@@ -28,7 +28,7 @@ class UnitLength final : public ceres::SizedCostFunction<2, kPointSize> {
 };
 
 /// At most `most` of the views that agree, spread evenly over all: a landmark couples every two keyframes that have a
-/// view here, and the hundredth view of a track says little that the others do not.
+/// view here, and the hundredth view of a track adds little information.
 template <class View>
 std::vector<const View*> spreadViews(const std::vector<View>& views, std::size_t most) {
   std::vector<const View*> inliers, result;

@@ -178,8 +178,8 @@ BatchProblem::Summary BatchProblem::solve(int max_iterations, double tolerance, 
   options.max_num_iterations = max_iterations;
   options.function_tolerance = tolerance;
   options.num_threads = 1;
-  // A landmark with a wrong sighting bounces, and a step that is refused for it leaves weak directions, as the scale,
-  // where they are: a few steps may raise the cost if it comes down below what it was.
+  // A landmark with a wrong sighting may raise the cost of a step, and a refused step leaves weakly observed
+  // directions such as the scale unchanged: a few steps may raise the cost if it then falls below its former value.
   options.use_nonmonotonic_steps = true;
   options.logging_type = ceres::SILENT;
   IterationCallback callback(goOn);

@@ -36,7 +36,7 @@ std::vector<ParallelLines> parallelLines(const MapParams& params, const MapMater
   return groups;
 }
 
-/// Whether a point track is held out: every n-th is left out of the adjustment, and its error tells how good that is.
+/// Whether a point track is held out: every n-th is left out of the adjustment, and its error shows how good that is.
 bool isHeldOut(const PointRecord& point, double share) {
   const auto period = static_cast<std::uint64_t>(std::lround(1 / std::max(share, 1e-6)));
   return share > 0 && point.id % std::max<std::uint64_t>(2, period) == 1;
@@ -47,7 +47,7 @@ double heldOutError(const MapParams& map, const MapMaterial& cameras_of, std::ve
                     int min_views) {
   const KeyframeCameras cameras(cameras_of);
   PointFitParams fit;
-  fit.max_error_px = 1e3;  // all views count: a result must not look good by calling them outliers
+  fit.max_error_px = 1e3;  // all views count: marking views as outliers must not lower the error
   fit.min_depth_m = map.min_depth_m;
   std::vector<double> errors;
   for (PointRecord& point : points) {
@@ -156,7 +156,7 @@ RefinementReport BatchRefinement::adjust(MapMaterial& material, const Refinement
     if (!goOn(round, 0)) return report;
     MapFitting fitting(map_, material);
     fitting.fitAll();
-    // The causal poses drifted: what is the same comes together only after a first adjustment.
+    // The causal poses drift: estimates of the same landmark coincide only after a first adjustment.
     // Passes that come closer now can be told apart better in the next round; the last one must be right.
     const bool last = round + 1 == params_.rounds;
     if (round > 0) report.merged += fitting.merge(last ? 0 : map_.merge.max_drift_px);
@@ -171,7 +171,7 @@ RefinementReport BatchRefinement::adjust(MapMaterial& material, const Refinement
     BatchProblem problem(calibrated_, estimator_, material, use_point, use_line,
                          static_cast<std::size_t>(std::max(0, params_.max_views)), groups);
     if (round == 0) report.imu_before = problem.imuError();
-    // landmarks are chosen and judged anew after every round but the last: those need not converge
+    // landmarks are chosen and classified anew after every round but the last: those need not converge
     const auto summary = problem.solve(params_.max_iterations, last ? 1e-4 : 1e-2,
                                        [&](int iteration) { return goOn(round, iteration); });
     if (cancelled) return report;

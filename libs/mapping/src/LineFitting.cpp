@@ -17,14 +17,14 @@ namespace lintel {
 
 namespace {
 
-/// A view as the fit sees it.
+/// A view in the form that the fit uses.
 struct FitView {
   Eigen::Matrix3d R_c_w;
   Eigen::Vector3d p_w_c, ends[2];
   double weight = 0;
 };
 
-/// H is that of the views alone; b and the cost hold the tie's part too.
+/// H is that of the views only; b and the cost hold the tie's part too.
 struct LineNormal : NormalEquations4 {
   Eigen::Matrix4d H_tie = Eigen::Matrix4d::Zero();
 };
@@ -210,7 +210,7 @@ bool fitLine(const KeyframeCameras& cameras, const LineFitParams& params, LineRe
       cost = refine(data, candidate);
     }
     const double freedom = std::max(1.0, 2.0 * static_cast<double>(views.size()) - 4.0);
-    const bool good = 2 * cost <= freedom;  // as the sigmas promise: no need for another start
+    const bool good = 2 * cost <= freedom;  // residuals agree with the sigmas: no other start is tried
     if (LineEstimate other; pass == 0 && !good && startFromPlanes(data, other)) {
       const double other_cost = refine(data, other);
       if (other_cost < cost) candidate = other, cost = other_cost;

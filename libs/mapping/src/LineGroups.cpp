@@ -122,7 +122,7 @@ double sigmaOf(const MapGroup& group) {
 }
 
 std::vector<bool> certainGroups(const LineMap& map) {
-  constexpr double kLeastShare = 0.10;  // of the map's length: a smaller group may be chance
+  constexpr double kLeastShare = 0.10;  // of the map's length: smaller groups also arise among random lines
   std::vector<double> lengths(map.groups.size(), 0.0);
   double total = 0;
   for (const MapLine& line : map.lines) {

@@ -12,12 +12,12 @@ namespace lintel {
 /// them and sets `group` of every line.
 std::vector<MapGroup> findGroups(const GroupParams& params, std::vector<MapLine>& lines);
 
-/// How parallel a group is, as a standard deviation: its spread, or a lower limit, since a few members may look more
-/// parallel by chance than they are.
+/// How parallel a group is, as a standard deviation: its spread, or a lower limit, since the spread of a few members
+/// may be smaller than that of the group.
 double sigmaOf(const MapGroup& group);
 
 /// Whether each group of a map is one of the scene: a tenth of the map's length at least. Among lines of all directions
-/// groups of a twentieth come about by chance (measured: a scene of struts).
+/// random groups reach a twentieth (measured: a scene of struts).
 std::vector<bool> certainGroups(const LineMap& map);
 
 }  // namespace lintel

@@ -12,7 +12,7 @@ namespace lintel {
 /// How well a line is known.
 enum class LineState {
   kNoEvidence,  ///< too few views that agree
-  kDegenerate,  ///< its views leave the direction or the place open
+  kDegenerate,  ///< its views do not determine direction or position
   kKnown,
 };
 

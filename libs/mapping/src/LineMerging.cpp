@@ -82,7 +82,7 @@ class LineMerger {
 
   std::vector<Candidate> candidates() const {
     SpatialIndex index(kCell_m);
-    constexpr int kMostSamples = 2000;  // of runaway lines
+    constexpr int kMostSamples = 2000;  // of lines with wrong, very large extents
     for (std::size_t i = 0; i < lines_.size(); ++i) {
       const double length = segments_[i].length();
       if (length <= 0) continue;

@@ -5,7 +5,7 @@
 
 namespace lintel {
 
-/// Takes back merges that turned out wrong: a track of a merged line most of whose views the line does not explain
+/// Undoes wrong merges: a track of a merged line most of whose views the line does not explain
 /// becomes a line of its own again, not known yet, with an id beyond all others. Returns how many.
 int splitLines(std::vector<LineRecord>& lines);
 

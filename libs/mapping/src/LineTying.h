@@ -10,10 +10,10 @@
 
 namespace lintel {
 
-/// The structural constraint for the map: a line whose views leave its direction or place open, and that the window
-/// found parallel to others, is fitted again with the direction of a group of lines whose directions are known
+/// The structural constraint for the map: a line whose views do not determine its direction or position, and that the
+/// window found parallel to others, is fitted again with the direction of a group of lines whose directions are known
 /// and with the points that lie on it, and replaced by that fit if its views agree with it. Others stay as they are.
-/// Returns how many were tied.
+/// Returns how many were constrained.
 int tieDegenerateLines(const KeyframeCameras& cameras, const LineFitParams& fit, const MapParams& params,
                        const std::vector<MapGroup>& groups, MapMaterial& material);
 

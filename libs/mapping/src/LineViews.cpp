@@ -20,7 +20,7 @@ NearestToRay nearestToRay(const LineEstimate& line, const Eigen::Vector3d& p_w_c
 
 bool viewStretch(const KeyframeCameras& cameras, const LineEstimate& line, const LineView& view,
                  std::pair<double, double>& stretch) {
-  // Sines of the angle between ray and line: below, where the two come together is not known.
+  // Sines of the angle between ray and line: below, the point nearest to the ray is not known.
   constexpr double kLeastSine = 0.05, kMostSine = 0.5, kSigmas = 3, kLeastDepth_m = 0.05;
   const double least_sine = std::clamp(kSigmas * line.sigmaDirection(), kLeastSine, kMostSine);
   const Eigen::Vector2d px[2] = {view.start_px, view.end_px};

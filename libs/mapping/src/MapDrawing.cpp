@@ -11,7 +11,7 @@ namespace lintel {
 
 namespace {
 
-/// Makes map entries of records; knows what is enough evidence.
+/// Makes map entries of records that have enough evidence.
 class MapDrawer {
  public:
   MapDrawer(const MapParams& params, const MapMaterial& material)

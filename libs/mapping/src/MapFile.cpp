@@ -16,14 +16,14 @@
 // The file, little endian throughout:
 //   8 bytes  mark, u32 version
 //   sections: 4 bytes name, u64 size, `size` bytes, u32 CRC-32 of all of the section before it
-//   the last section is "END_" and empty: what breaks off earlier is seen to be cut
+//   the last section is "END_" and empty: a file that ends earlier is cut
 namespace lintel {
 
 namespace {
 
 using namespace std::string_view_literals;
 constexpr std::string_view kMark =
-    "\x89LINTEL\n"sv;  // the first byte is no text, the last one suffers in text transfers
+    "\x89LINTEL\n"sv;  // the first byte is no text; transfers in text mode change the last one
 constexpr std::uint32_t kVersion = 1;
 constexpr std::string_view kEnd = "END_";
 
@@ -44,7 +44,7 @@ void writeSection(AtomicFile& file, std::string_view name, const std::string& pa
   file.write(crc.bytes());
 }
 
-/// Takes a map file apart; knows where it is for messages.
+/// Parses a map file; keeps the position for messages.
 class MapFileReader {
  public:
   MapFileReader(const std::string& path, std::istream& file, std::uint64_t size)

@@ -12,10 +12,10 @@ class MapFitting {
  public:
   MapFitting(const MapParams& params, MapMaterial& material);
 
-  /// Every point and line anew from all its views, outliers too: what was rejected once may be right by now.
+  /// Every point and line anew from all its views, outliers included, as they may fit the present poses.
   void fitAll();
 
-  /// Joins what is the same; returns how many landmarks went. `drift_px`: see mergeLines.
+  /// Joins estimates of the same landmark; returns how many were joined to others. `drift_px`: see mergeLines.
   int merge(double drift_px = 0);
 
   /// Ties degenerate lines to groups of parallel lines whose directions are known.

@@ -13,7 +13,7 @@ constexpr std::size_t kKeyframeSize = 8 + 8 + 7 * 8 + 9 * 8, kPointObservationSi
 
 enum LineFlag : std::uint8_t { kDegenerate = 1, kConstrained = 2 };
 
-// One list of a rig's numbers serves both directions, so that they cannot come apart.
+// One list of a rig's numbers serves both directions, so that they cannot differ.
 template <class RigT, class Integer, class Number>
 void rigFields(RigT& rig, Integer&& integer, Number&& number) {
   auto& camera = rig.camera;

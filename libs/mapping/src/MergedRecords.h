@@ -12,7 +12,7 @@
 
 namespace lintel {
 
-/// Keeps track of which landmarks have become one: a landmark that goes points to the one that stays.
+/// Keeps track of which landmarks have become one: a landmark that was joined refers to the one that stays.
 class MergedRecords {
  public:
   explicit MergedRecords(std::size_t size) : roots_(size) { std::iota(roots_.begin(), roots_.end(), std::size_t{0}); }
@@ -26,7 +26,7 @@ class MergedRecords {
   /// Both are roots.
   void join(std::size_t stays, std::size_t goes) { roots_[goes] = stays; }
 
-  /// Takes what went out of `records`.
+  /// Removes the joined ones from `records`.
   template <class Record>
   void compact(std::vector<Record>& records) const {
     std::size_t kept = 0;

@@ -6,8 +6,9 @@
 
 namespace lintel {
 
-/// Makes one point of those that are the same corner, lost and found again under another identity: never in one image
-/// together, close to each other, and one position explains the views of both. Returns the number of points that went.
+/// Joins points that are estimates of the same corner, tracked with different identities: never in one image together,
+/// close to each other, and one position explains the views of both. Returns the number of points that were joined to
+/// others.
 int mergePoints(const KeyframeCameras& cameras, const PointFitParams& fit, const MergeParams& params,
                 std::vector<PointRecord>& points);
 

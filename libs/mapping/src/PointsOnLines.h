@@ -7,14 +7,14 @@
 
 namespace lintel {
 
-/// Finds points that lie on lines [METHOD, section 3: they fix the depth of degenerate lines].
+/// Finds points that lie on lines (doc/method/degeneracy.md: they determine the distance of degenerate lines).
 class PointsOnLines {
  public:
   PointsOnLines(const KeyframeCameras& cameras, const std::vector<PointRecord>& points);
 
   /// Points that lie on a line of direction `direction_w`: on its views in nearly all keyframes that saw both, and,
-  /// where they are several, most of them on one parallel of that direction. Whether they agree with the views is for
-  /// the fit to tell.
+  /// where they are several, most of them on one parallel of that direction. Whether they agree with the views is
+  /// checked by the fit.
   std::vector<PointOnLine> on(const LineRecord& line, const Eigen::Vector3d& direction_w) const;
 
  private:

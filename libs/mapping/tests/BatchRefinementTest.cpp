@@ -163,7 +163,8 @@ TEST_F(BatchRefinementTest, LinesOfAGroupShareTheirDirection) {
   EXPECT_LT(error(material_), 1.05 * error(free));
 }
 
-/// Landmarks with wrong sightings bounce, and scale is held by little: the adjustment must not end on the way.
+/// Landmarks with wrong sightings raise the cost of single steps, and the scale is weakly observed: the adjustment must
+/// not end early.
 TEST_F(BatchRefinementTest, EndsWhereMoreEffortWouldEnd) {
   constexpr double kWrongScale = 1.03;
   for (RetiredKeyframe& k : material_.keyframes) k.T_w_b.p *= kWrongScale, k.v_w_b *= kWrongScale;

@@ -103,7 +103,7 @@ TEST_F(LineTyingTest, ALineThatIsNotParallelIsNotBent) {
   EXPECT_EQ(line.estimate.direction_w, free.estimate.direction_w);
 }
 
-TEST_F(LineTyingTest, WhatTheWindowDidNotFindParallelIsLeftAlone) {
+TEST_F(LineTyingTest, WhatTheWindowDidNotFindParallelIsNotConstrained) {
   LineRecord line = lineOf(material_, 1, nearly_);
   ASSERT_TRUE(fitLine(cameras_, fit_, line));
   MapGroup group;
@@ -115,7 +115,7 @@ TEST_F(LineTyingTest, WhatTheWindowDidNotFindParallelIsLeftAlone) {
   }
 }
 
-TEST_F(LineTyingTest, ALineThatKnowsItselfIsLeftAlone) {
+TEST_F(LineTyingTest, AWellDeterminedLineIsNotConstrained) {
   const Segment3 upright{{0.8, -0.7, 4}, {0.9, 0.6, 4.1}};
   const LineRecord line = tied(lineOf(material_, 1, upright), upright.direction());
   EXPECT_EQ(tied_, 0);

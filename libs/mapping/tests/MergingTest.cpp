@@ -110,7 +110,7 @@ TEST_F(MergingTest, APassThatDriftedIsJoinedWhereTheTrajectoryMayStillMove) {
   EXPECT_EQ(merge(lines), 1);
 }
 
-TEST_F(MergingTest, ADriftedPassBesideTwoLinesIsLeftAlone) {
+TEST_F(MergingTest, ADriftedPassBesideTwoLinesIsNotMerged) {
   drift_px_ = 4;
   std::vector<LineRecord> lines{lineOf(material_, 1, upright_, 0, 3),
                                 lineOf(material_, 2, besides(upright_, 0.07), 0, 3),

@@ -9,7 +9,7 @@
 
 namespace lintel {
 
-/// What went wrong in a run, or nearly, in words that say what to do; the gravest first. Empty if nothing did.
+/// Problems and near-problems of a run with their remedies, the most severe first; empty if there are none.
 /// `calibration` is what the recording came with; `recording_warnings` is what reading it found.
 std::vector<std::string> adviceFor(const OdometryResult& result, const Rig& calibration, const RunSeries& series,
                                    const std::vector<std::string>& recording_warnings);

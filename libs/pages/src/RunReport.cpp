@@ -52,7 +52,7 @@ std::string differences(const std::string& text, const std::string& other) {
   return result;
 }
 
-/// The name that a recording goes by.
+/// The name of a recording.
 std::string nameOf(const std::string& input) {
   std::filesystem::path path = std::filesystem::absolute(input + "/.").lexically_normal().parent_path();
   if (path.filename() == "mav0") path = path.parent_path();

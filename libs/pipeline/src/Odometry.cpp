@@ -58,7 +58,7 @@ Configuration withClock(Configuration configuration, const ClockSearch& search) 
   return configuration;
 }
 
-/// Stages and map know the offset that remains after the stamps have been corrected; the result tells all of it.
+/// Stages and map know the offset that remains after the stamps have been corrected; the result has the sum of both.
 void addClock(const ClockSearch& search, OdometryResult& result) {
   if (search.offset_s == 0) return;
   result.time_offset_s += search.offset_s;

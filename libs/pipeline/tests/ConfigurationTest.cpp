@@ -153,7 +153,7 @@ TEST_F(ConfigurationTest, TheDefaultsAreAllowed) {
 }
 
 /// The tables of the document: | `key` | default | allowed | meaning |
-TEST_F(ConfigurationTest, TheDocumentTellsWhatIsAllowed) {
+TEST_F(ConfigurationTest, TheDocumentHasTheAllowedValues) {
   const std::regex row("^\\| \\**`([a-z0-9_.]+)`\\** \\| [^|]* \\| ([^|]*) \\| .* \\|$");
   std::ifstream document(LINTEL_SOURCE_DIR "/doc/configuration.md");
   std::map<std::string, std::string> documented;

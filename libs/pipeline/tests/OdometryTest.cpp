@@ -134,7 +134,7 @@ TEST_P(OdometryTest, AnObserverThatThrowsEndsTheRun) {
   EXPECT_THROW(runOdometry(recording, {}, options_), std::runtime_error);
 }
 
-TEST_P(OdometryTest, TheMapKnowsItsConfiguration) {
+TEST_P(OdometryTest, TheMapHoldsItsConfiguration) {
   BlackRecording recording(2);
   Configuration configuration;
   configuration.estimator.keyframes = 8;

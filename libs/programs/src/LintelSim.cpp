@@ -119,7 +119,7 @@ class LintelSim {
       throw std::runtime_error(folder.string() + ": is no recording; not replaced, choose another folder");
   }
 
-  /// Beside the folder, then under its name: nobody sees half a recording.
+  /// Written beside the folder, then renamed: the folder is never half a recording.
   SimulationSummary write(const Simulation& simulation, const fs::path& folder) const {
     const fs::path part = folder.string() + ".part";
     if (fs::exists(part / "mav0") || (fs::is_directory(part) && fs::is_empty(part))) fs::remove_all(part);

@@ -205,7 +205,7 @@ std::vector<DrawnFigure> svgsOf(const std::vector<Figure>& figures) {
     DrawnFigure& result = drawn[asked[k]];
     if (pictures.size() == asked.size())
       result.svg = pictures[k];
-    else  // gnuplot stops at what it does not like: find out where
+    else  // gnuplot stops at an error: find out where
       result = drawAlone(figures[asked[k]]);
   }
   return drawn;

@@ -21,7 +21,8 @@ struct RawlogNote {
 /// Numbers are written so that they read back exactly.
 std::string formatNote(const RawlogNote& note);
 
-/// Empty when the text is somebody else's comment. Throws RecordingError naming `where` when it is ours but damaged.
+/// Empty when the text is another program's comment. Throws RecordingError naming `where` when it is Lintel's but
+/// damaged.
 std::optional<RawlogNote> parseNote(const std::string& text, const std::string& where);
 
 }  // namespace lintel

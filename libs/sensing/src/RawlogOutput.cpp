@@ -39,7 +39,7 @@ void RawlogOutput::checkExisting(bool overwrite) const {
   const bool rawlog_exists = fs::exists(rawlog_), images_exist = fs::exists(images_);
   if (rawlog_exists && !overwrite)
     throw std::runtime_error(rawlog_ + ": exists already: choose another name or overwrite it with -w");
-  // Without its rawlog the folder may be anybody's: never replaced.
+  // Without its rawlog the folder may belong to something else: never replaced.
   if (external_images_ && images_exist && !rawlog_exists)
     throw std::runtime_error(images_ + ": exists already, without its rawlog: remove it or choose another name");
 }

@@ -13,7 +13,7 @@ class CObservationIMU;
 
 namespace lintel {
 
-/// What the beginning of a rawlog tells about the whole.
+/// What the beginning of a rawlog shows of the whole.
 struct RawlogProbe {
   Rig rig;
   std::string camera_label, imu_label;

@@ -185,7 +185,7 @@ std::unique_ptr<RawlogSource> makeGroundtruthSource(const std::string& csv) {
 }
 
 std::shared_ptr<CObservation> makeComment(const std::string& text, std::int64_t t_ns) {
-  // It would stamp itself "now" and so stretch the recording over years.
+  // Without this MRPT would set the present time, and the recording would last years.
   auto comment = stamped<mrpt::obs::CObservationComment>("", t_ns);
   comment->text = text;
   return comment;

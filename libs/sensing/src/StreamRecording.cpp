@@ -37,7 +37,7 @@ void StreamRecording::runAhead() {
 StreamRecording::ItemPtr StreamRecording::take() {
   if (!runs_ahead_) return produce();
   if (!thread_.joinable()) thread_ = std::thread([this] { runAhead(); });
-  return std::move(*queue_.pop());  // never closed while somebody takes
+  return std::move(*queue_.pop());  // never closed while values are taken
 }
 
 std::optional<FrameWithImu> StreamRecording::next() {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-// The only place that knows which Embree this is: version 3 (Debian 12) passes a context, version 4 (Debian 13)
+// The only place that depends on Embree's version: version 3 (Debian 12) passes a context, version 4 (Debian 13)
 // arguments.
 #if __has_include(<embree4/rtcore.h>)
 #include <embree4/rtcore.h>

@@ -16,7 +16,8 @@ struct RayHit {
   float distance = 0;  ///< along the ray in lengths of its direction
 };
 
-/// Intersections of rays with a scene's patches. The only place that knows Embree. Safe to use from several threads.
+/// Intersections of rays with a scene's patches. The only place that uses Embree's rays. Safe to use from several
+/// threads.
 class RayCaster {
  public:
   static constexpr int kPacket = 8;

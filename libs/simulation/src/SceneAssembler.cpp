@@ -125,7 +125,7 @@ void SceneAssembler::shell(int wall_material, int floor_material, int ceiling_ma
     walls[i] = {middle + reach * outward[i], R * Vector3d(-outward[i])};
   }
   const Plane floor{low, Vector3d::UnitZ()}, ceiling{high, -Vector3d::UnitZ()};
-  const double beyond = 0.4 * size.norm();  // surfaces overlap behind the edges, where nobody sees them
+  const double beyond = 0.4 * size.norm();  // surfaces overlap behind the edges, where they are hidden
   for (int i = 0; i < 4; ++i) {
     const Plane &before = walls[(i + 3) % 4], &after = walls[(i + 1) % 4];
     const Vector3d a = meet(walls[i], before, floor), b = meet(walls[i], after, floor);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A written recording held against itself by nothing of ours: files are read line by line, lines are projected and
+// Consistency of a written recording, without Lintel's code: files are read line by line, lines are projected and
 // edges found by OpenCV, the IMU is integrated in the plainest way.
 #include <gtest/gtest.h>
 

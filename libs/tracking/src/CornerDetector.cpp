@@ -141,7 +141,7 @@ std::vector<cv::Point2f> CornerDetector::detect(const ImagePyramid& pyramid, con
     }
   };
   choose(candidates(pyramid, params_.min_quality));
-  // A lamp or a sheet of paper in a dim room outshines every other corner.
+  // The corners of a lamp or a sheet of paper in a dim room are much stronger than all others.
   if (2 * (taken.size() + found.size()) < static_cast<std::size_t>(params_.max_points))
     choose(candidates(pyramid, kFewCorners * params_.min_quality));
   return found;

@@ -7,7 +7,7 @@
 
 namespace lintel {
 
-/// Answers "is there already a point nearer than d" in constant time.
+/// Finds in constant time whether there is a point nearer than d.
 class DistanceGrid {
  public:
   DistanceGrid(int width, int height, double distance_px)

@@ -30,7 +30,8 @@ std::vector<TrackId> DriftCheck::drifting() const {
   }
   const Eigen::Matrix3d information = Eigen::Matrix3d::Identity() / (kRotationSigma_rad * kRotationSigma_rad);
   const TwoViewMotion motion = twoViewMotion(pairs, entries_.front().R_c_ct, information, params_);
-  if (2 * static_cast<std::size_t>(motion.inliers) < pairs.size()) return ids;  // no motion explains most: no verdict
+  if (2 * static_cast<std::size_t>(motion.inliers) < pairs.size())
+    return ids;  // no motion explains most tracks: none is rejected
   for (std::size_t i = 0; i < paired.size(); ++i)
     if (!motion.inlier[i]) ids.push_back(paired[i]);
   return ids;

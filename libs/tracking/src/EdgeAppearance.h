@@ -33,7 +33,7 @@ struct SideLevels {
 /// where less than half of the segment is in the image (8 bit grey).
 std::optional<SideLevels> sideLevels(const LineCamera& camera, const cv::Mat& image, const ImageLine& line);
 
-/// Whether an edge may be the one that had the levels `before`. Blur brings both sides nearer to each other and keeps
+/// Whether an edge may be the one that had the levels `before`. Blur brings the levels of both sides closer and keeps
 /// their mean; the next edge of a staircase has another mean.
 bool maybeSameEdge(const SideLevels& now, const SideLevels& before);
 

@@ -13,7 +13,7 @@ namespace {
 
 // All lengths are pixels of the image, whatever the focal length: what counts is the sampling, the blur and the noise.
 constexpr double kStep_px = 4;             ///< between samples along the line: blur makes nearer ones alike
-constexpr double kMaxSteps = 50;           ///< on a long line they lie further apart: it is known well by as many
+constexpr double kMaxSteps = 50;           ///< on a long line they lie further apart: so many determine it well
 constexpr float kWeak = 0.3f;              ///< of the line's usual gradient: less is another edge, or none
 constexpr float kSecond = 0.4f;            ///< of the strongest gradient of a profile: less is no candidate
 constexpr float kMinGradient = 32 * 2.0f;  ///< 2 grey levels a pixel, in units of gradientsAcross()
@@ -67,7 +67,7 @@ float usualGradient(const std::vector<Sample>& samples) {
   return upperMedian(gradients);
 }
 
-/// Takes away candidates much weaker than the line's own edge.
+/// Removes candidates much weaker than the line's own edge.
 void dropWeak(Sample& sample, float usual) {
   while (sample.candidates > 0 && sample.gradient[static_cast<std::size_t>(sample.candidates) - 1] < kWeak * usual)
     --sample.candidates;
@@ -212,7 +212,7 @@ int firstSupported(const std::vector<Sample>& samples, int from, int end, int st
 }
 
 /// Walks outward from `s` by `step_px` while the edge goes on, over at most one place without it; returns how far.
-/// What lies beyond the segment does not change the fit: an edge that meets it at an acute angle would turn it.
+/// What lies beyond the segment does not change the fit: an edge that meets it at an acute angle would rotate it.
 double grow(Profiler& profiler, const Fit& fit, double s, double step_px, double limit_px, float usual,
             double tolerance_px) {
   double reached = s;

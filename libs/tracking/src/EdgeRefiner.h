@@ -17,7 +17,7 @@ struct RefinedLine {
   double support = 0;   ///< share of samples along the line that see the edge
 };
 
-/// Lays segments on the maximum of the image gradient: the position comes from this frame's edge alone, so that small
+/// Lays segments on the maximum of the image gradient: the position comes from this frame's edge only, so that small
 /// errors of optical flow never add up. A line's normal points to the brighter side; an edge of opposite contrast
 /// nearby (the other side of a board) is a different line and is not seen.
 class EdgeRefiner {

@@ -9,7 +9,7 @@ namespace {
 constexpr double kSupportWithoutFlow = 0.7;  ///< an edge found without optical flow must be a clear one
 constexpr double kSupportOfNew = 0.7;        ///< of a new line: there are more candidates than places
 constexpr double kSlack = 1.5;               ///< of a jump's limit: the edge is not where optical flow ended
-constexpr double kFade = 0.8;                ///< of a drift, per frame: its memory is five frames
+constexpr double kFade = 0.8;                ///< decay of a drift per frame: a mean over about five frames
 
 // Pixels of the image, whatever the focal length: they are multiples of the error with which an edge is found.
 constexpr double kNoise_px = 0.35;  ///< of an end across the line, from frame to frame
@@ -17,7 +17,7 @@ constexpr double kSureDepth_px =
     1.0;                            ///< depths that predict the line less exactly are not used: three times the noise
 constexpr double kMaxDrift_px = 4;  ///< a line that drifts further follows another edge: a dozen times the noise
 constexpr double kJump_px = 2.5;    ///< so far from where it was expected a line must look as before
-constexpr double kSame_px = 1.0;    ///< one edge as seen twice in the same image
+constexpr double kSame_px = 1.0;    ///< between two detections of one edge in the same image
 constexpr double kWithoutFlow_px = 2;  ///< by which a line may be farther off when optical flow did not find it
 
 }  // namespace
@@ -43,7 +43,7 @@ void FlowLineTracker::process(const ImagePyramid& pyramid, const GyroPrediction&
   if (frames_since_detection_ == 0) {
     StageTimer timer(statistics, "lines_detect");
     const std::vector<ImageLine> fresh = mergeDetections(pyramid, statistics);
-    dropDuplicates(statistics.lines);  // not more often: lines that touch for a frame or two part again
+    dropDuplicates(statistics.lines);  // not more often: lines that touch for a frame or two separate again
     addNew(pyramid, fresh);
   }
   frames_since_detection_ = (frames_since_detection_ + 1) % params_.detect_every_n;
@@ -103,7 +103,7 @@ std::vector<ImageLine> FlowLineTracker::mergeDetections(const ImagePyramid& pyra
   return std::move(merged.fresh);
 }
 
-/// Puts a track on the edge that was found for it; false when that moves or looks as another edge would.
+/// Moves a track to the edge that was found for it; false when motion or appearance are those of another edge.
 bool FlowLineTracker::moveTo(const ImagePyramid& pyramid, const ImageLine& line, const StepTranslation& step,
                              Track& track) const {
   const Eigen::Vector2d deviation = normalMotion(track.expected, line);

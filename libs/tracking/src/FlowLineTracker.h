@@ -31,7 +31,7 @@ class FlowLineTracker : public LineTracker {
     double typical_px = 0;                ///< see PredictedLine
     std::optional<CarriedDepth> carried;  ///< its depth, where `expected` relies on it
     std::optional<LineDepth> depth;
-    Eigen::Vector2d drift{0, 0};            ///< of its ends from where its depth brings them, summed up, fading
+    Eigen::Vector2d drift{0, 0};  ///< of its ends from where its depth brings them, summed up with exponential decay
     std::optional<Eigen::Vector2d> motion;  ///< of its ends beyond the rotation, see CarriedLine
     std::optional<SideLevels> sides;        ///< when last seen
     double sigma_px = 1;

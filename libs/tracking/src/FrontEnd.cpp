@@ -63,7 +63,7 @@ struct FrontEnd::Impl {
   ImagePyramid pyramid;
   GyroPrediction gyro;
   PointTracker points;
-  std::unique_ptr<LineTracker> lines;  ///< null: points alone
+  std::unique_ptr<LineTracker> lines;  ///< null: points only
   FrontEndStatistics statistics;
   std::int64_t last_t_ns = 0;
 };

@@ -8,10 +8,11 @@
 namespace lintel {
 namespace {
 
-constexpr double kForget = 0.98;             ///< of the information, per frame: the bias walks, early errors must fade
+constexpr double kForget =
+    0.98;  ///< of the information, per frame: the bias walks, so that the weight of early errors must decay
 constexpr double kRotationNoise_rad = 5e-4;  ///< of an integrated step: gyro noise, timing, exposure
 constexpr double kUnknownRate = 1.0;         ///< [rad/s] how far constant rotation may be wrong without gyro
-constexpr double kMinBiasSigma = 1e-3;       ///< [rad/s] the bias is never trusted further than this
+constexpr double kMinBiasSigma = 1e-3;       ///< [rad/s] lower bound of the bias's standard deviation
 
 }  // namespace
 

@@ -21,7 +21,7 @@ class ImagePyramid {
   void push(const GrayImage& image);
 
   bool hasPrevious() const { return frames_ > 1; }
-  /// Levels from full resolution on, with readable pixels around as followPatches() wants them.
+  /// Levels from full resolution on, with readable pixels around as followPatches() needs them.
   const std::vector<cv::Mat>& current() const { return pyramids_[frames_ % 2]; }
   const std::vector<cv::Mat>& previous() const { return pyramids_[(frames_ + 1) % 2]; }
 

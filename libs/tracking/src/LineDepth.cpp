@@ -8,7 +8,7 @@ namespace lintel {
 namespace {
 
 constexpr double kDrift = 0.008;     ///< relative growth of a depth's uncertainty per step: the translation's errors
-constexpr double kAssumedSigma = 1;  ///< of an assumed inverse depth, relative: anything is possible
+constexpr double kAssumedSigma = 1;  ///< of an assumed inverse depth, relative: unknown
 
 InverseDepth interpolate(const LineDepth& depth, double share) {
   return {(1 - share) * depth.start.w + share * depth.end.w,

@@ -8,8 +8,8 @@
 
 namespace lintel {
 
-/// How far away a line's ends are, as inverse depths in the unit of StepTranslation. It says how the line has to move
-/// when the camera moves: an edge that moves otherwise is another one, however near it may be in the image.
+/// How far away a line's ends are, as inverse depths in the unit of StepTranslation. They predict how the line
+/// moves when the camera moves: an edge that moves otherwise is another one, also where it is near in the image.
 struct LineDepth {
   InverseDepth start, end;
   int epoch = 0;  ///< of StepTranslation
@@ -22,10 +22,10 @@ struct CarriedDepth {
   Eigen::Vector2d sigma_px{0, 0};  ///< of the ends across the line
 };
 
-/// Depth of a line that nothing is known of but what the points say.
+/// Initial depth of a line: that of the points.
 LineDepth assumedDepth(const StepTranslation& step);
 
-/// `turned`: `line` as the rotation alone would show it.
+/// `turned`: `line` moved by the rotation only.
 CarriedDepth carry(const LineDepth& depth, const ImageLine& line, const ImageLine& turned,
                    const Eigen::Quaterniond& R_c1_c0, const Eigen::Vector3d& t_c1, double focal_px);
 

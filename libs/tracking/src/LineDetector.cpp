@@ -12,7 +12,7 @@ namespace {
 constexpr double kJoinAngle_rad = 0.035;  ///< 2 degrees: how exactly a piece of 30 px is known
 constexpr double kJoinDistance_px = 2.0;  ///< of the image: detections at half resolution are good to one pixel
 constexpr double kJoinGap_px = 15;        ///< between pieces of one edge, at the reference focal length
-constexpr double kPiece = 0.3;            ///< of a new line's least length: shorter pieces are not worth joining
+constexpr double kPiece = 0.3;            ///< of a new line's least length: shorter pieces are not joined
 constexpr int kAnchorThreshold = 4;       ///< of edge_drawing: by how much an anchor's gradient exceeds its neighbours'
 constexpr int kLeastPiece_px = 8;         ///< of edge_drawing, at half resolution: less is noise
 

@@ -10,7 +10,8 @@
 namespace lintel {
 namespace {
 
-// Limits of the image itself: noise, blur, and how exactly a patch or an edge is found, whatever the camera sees.
+// Limits of the image itself: noise, blur, and how exactly a patch or an edge is found. They do not scale with the
+// camera.
 constexpr double kMinTexture = 1e-3;  ///< a patch on a plain edge has nearly none along it, and is used
 constexpr double kSettled_px = 0.03;  ///< a smaller step ends optical flow: a tenth of the error it is taken to have
 constexpr double kFitTolerance_px = 1.5;  ///< of a sample from the line: five times the error of optical flow
@@ -26,7 +27,7 @@ constexpr double kMaxDeviation_px = 40;  ///< flow further than this from the gu
 Eigen::Vector2d toEigen(const cv::Point2f& p) { return {p.x, p.y}; }
 
 /// Lays the guessed ends on the fitted line, moved along it by what the samples moved. A patch on a plain edge slides
-/// along it, so that the median of all says more than the ends' own patches.
+/// along it, so that the median of all is more accurate than the ends' own patches.
 ImageLine carryEnds(const ImageLine& guess, const RobustLine& fit, const std::vector<Eigen::Vector2d>& guessed,
                     const std::vector<Eigen::Vector2d>& found) {
   Eigen::Vector2d d = fit.line.direction();
@@ -127,7 +128,8 @@ PredictedLine LineFlow::fit(const Samples& samples, std::size_t index, double ju
   const auto robust = fitRobustLine(found_u, kFitTolerance_px);
   if (!robust) return result;
   const ImageLine carried = carryEnds(guess, *robust, guessed_u, found_u);
-  // Among parallel stripes flow may lock onto a neighbour. A line with a history does not jump.
+  // Among parallel stripes flow may converge to a neighbour, so that jumps against the line's former motion are
+  // rejected.
   if (normalMotion(guess, carried).cwiseAbs().maxCoeff() > jump_px) return result;
   result.line = carried;
   result.by_flow = true;
@@ -165,8 +167,8 @@ std::vector<std::optional<PredictedLine>> LineFlow::predict(const std::vector<Ca
   std::vector<PredictedLine> followed =
       follow(lines, pyramid, gyro, points, {params_.window_px, params_.flow_levels, params_.max_jump_px});
 
-  // A camera that is jerked deviations all lines, another edge just one: what the lines of this frame have in common
-  // says how far each may be off.
+  // A jerk of the camera displaces all lines, a wrong edge just one: the limit for each follows from what the lines of
+  // this frame have in common.
   const double typical_px = typicalDeviation(lines, followed);
   const double limit_px = std::min(params_.max_jump_px, kTolerance_px + kTimesTypical * typical_px);
   for (std::size_t i = 0; i < lines.size(); ++i) {

@@ -15,8 +15,8 @@
 namespace lintel {
 
 /// A line of the frame before. `motion`: how far its start and end moved along its normal in the last step, beyond what
-/// the camera's rotation explains [px]; empty for a new line. Bodies have inertia: the line's next step is its last
-/// one, plus the change of motion of the points nearby.
+/// the camera's rotation explains [px]; empty for a new line. The line's next step is predicted as its last
+/// one plus the change of motion of the points nearby.
 struct CarriedLine {
   ImageLine line;
   std::optional<Eigen::Vector2d> motion;
@@ -26,7 +26,7 @@ struct CarriedLine {
 /// A line carried into the current frame.
 struct PredictedLine {
   ImageLine line;
-  ImageLine turned;                   ///< where the line would be had the camera only turned
+  ImageLine turned;                   ///< where the line would be after the rotation only
   ImageLine expected;                 ///< where its own motion and that of the points nearby bring it
   double limit_px = 0;                ///< further from `expected` it is another edge; see LineFlow::predict
   double typical_px = 0;              ///< how far this frame's lines are from where they were expected
@@ -34,8 +34,9 @@ struct PredictedLine {
   bool by_flow = false;               ///< false: optical flow failed; predicted by the gyroscope and the points nearby
 };
 
-/// Carries lines from one frame to the next: several points along each are followed by KLT, starting where gyro and
-/// nearby tracked points say, and a line is fitted to them in undistorted coordinates [Lim2021, line tracking].
+/// Carries lines from one frame to the next: several points along each are followed by KLT, starting from the
+/// prediction by gyro and nearby tracked points, and a line is fitted to them in undistorted coordinates [Lim2021, line
+/// tracking].
 class LineFlow {
  public:
   LineFlow(const LineCamera& camera, const LineTrackerParams& params) : camera_(camera), params_(params) {}
@@ -48,10 +49,10 @@ class LineFlow {
   struct Samples {
     std::vector<std::size_t> first;          ///< of each line; one more at the end
     std::vector<cv::Point2f> from, guess;    ///< image pixels
-    std::vector<ImageLine> turned, guessed;  ///< per line: by the rotation alone, and with the expected motion
+    std::vector<ImageLine> turned, guessed;  ///< per line: by the rotation only, and with the expected motion
     std::vector<std::optional<CarriedDepth>> depths;
   };
-  /// How far optical flow looks.
+  /// Search range of optical flow.
   struct Reach {
     int window_px, levels;
     double jump_px;  ///< largest distance from where a line with a history is expected

@@ -42,7 +42,7 @@ double LineMerger::score(const ImageLine& predicted, const ImageLine& detected) 
   if (relation.angle_rad > params_.merge_angle_rad || relation.distance_px > params_.merge_distance_px ||
       relation.overlap_px < -kGap_px * pixel_scale_ || shorter <= 0)
     return 0;
-  // A piece that merely continues the line counts, but less than one beside it.
+  // A piece that continues the line counts, but less than one beside it.
   const double overlap = 0.2 + 0.8 * std::clamp(relation.overlap_px / shorter, 0.0, 1.0);
   return overlap * (1.0 - 0.7 * relation.angle_rad / params_.merge_angle_rad) *
          (1.0 - 0.7 * relation.distance_px / params_.merge_distance_px);

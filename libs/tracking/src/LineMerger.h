@@ -11,7 +11,7 @@ namespace lintel {
 /// Predicted lines after the detections of the same frame have been taken in.
 struct MergedLines {
   std::vector<ImageLine> lines;  ///< per prediction: it, extended by the detections that belong to it
-  std::vector<int> detections;   ///< per prediction: how many those are; 0: the prediction stands alone
+  std::vector<int> detections;   ///< per prediction: how many those are; 0: the prediction has none
   std::vector<ImageLine> fresh;  ///< detections that belong to no prediction
 };
 

@@ -13,15 +13,15 @@ namespace lintel {
 namespace {
 
 // Lengths are pixels of the image: they are errors of optical flow, which do not depend on the focal length.
-constexpr int kMaxIterations = 6;          ///< a patch that needs more resembles nothing nearby
+constexpr int kMaxIterations = 6;          ///< a patch that needs more has no match nearby
 constexpr float kConverged_px = 0.01f;     ///< far below the error of a patch's place
 constexpr float kMaxShift_px = 1.5f;       ///< from where optical flow has led: five times its error
 constexpr float kLeastCorrelation = 0.8f;  ///< of a patch with what is seen: less is something else, or occluded
-constexpr float kLeastNorm = 20;           ///< of a patch, mean taken out: 1.5 grey levels rms are no more than noise
+constexpr float kLeastNorm = 20;           ///< of a patch, mean taken out: 1.5 grey levels rms are noise
 constexpr float kLeastArea = 0.6f,
                 kMostArea = 1.6f;                ///< of the view of a patch; beyond: a new patch, as resolutions differ
 constexpr float kNoise = 0.05f, kShear = 0.02f;  ///< of a pixel of a patch of norm 1; of the linear part in a step
-constexpr int kMaxFailures = 3;                  ///< in a row: blur and short occlusions pass
+constexpr int kMaxFailures = 3;                  ///< in a row: blur and short occlusions are tolerated
 
 /// Takes brightness and contrast out; false without any texture.
 template <class Patch>

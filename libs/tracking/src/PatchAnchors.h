@@ -9,23 +9,23 @@
 
 namespace lintel {
 
-/// What became of a track at its patch.
+/// Result of registering a track to its patch.
 enum class AnchorVerdict {
-  kHeld,    ///< moved to the place that looks like its patch
-  kUnsure,  ///< no such place, or no patch: it stays where the flow has led
-  kLost,    ///< no such place for some frames: it has slipped off what it followed
+  kHeld,    ///< moved to the place that matches its patch
+  kUnsure,  ///< no such place, or no patch: it stays at the result of the flow
+  kLost,    ///< no such place for some frames: the track has drifted off its point
 };
 
-/// Holds points to where they were first seen. Optical flow from frame to frame adds its errors up: after forty frames
-/// a track has slipped by half a pixel. Here the patch of the first sighting is aligned with the current image, turned,
-/// scaled and sheared as the view demands, from where the flow has led [Baker2004, inverse compositional; Shi1994].
+/// Registers points to the patch of their first sighting. Errors of optical flow from frame to frame accumulate: after
+/// forty frames a track has drifted by half a pixel. Here the patch of the first sighting is aligned with the current
+/// image, by an affine warp, starting from the result of the flow [Baker2004, inverse compositional; Shi1994].
 class PatchAnchors {
  public:
   /// The patch of a track that has none.
   void add(TrackId id, const cv::Mat& image, const cv::Point2f& px);
   bool has(TrackId id) const { return anchors_.count(id) > 0; }
 
-  /// Moves `px` to the place in `image` (8 bit grey) that looks like the track's patch, if there is one.
+  /// Moves `px` to the place in `image` (8 bit grey) that matches the track's patch, if there is one.
   AnchorVerdict align(TrackId id, const cv::Mat& image, cv::Point2f& px);
 
   /// Forgets the patches of tracks that are not in `points` (ascending id).

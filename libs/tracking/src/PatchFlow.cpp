@@ -17,7 +17,7 @@ constexpr float kGradientScale = 64;  ///< see Template::differentiate
 /// Columns of a patch with what fills it up to whole vectors.
 int paddedColumns(int window_px) { return (window_px + kLanes - 1) / kLanes * kLanes; }
 
-/// Bilinear weights of a place between four pixels, in pairs as the products want them.
+/// Bilinear weights of a place between four pixels, in pairs as the products need them.
 class Weights {
  public:
   Weights(float fx, float fy) {
@@ -172,7 +172,7 @@ class Template {
   std::vector<short> mask_;     ///< of a row: 0 beyond window or image, else -1 as differences are left less right
 };
 
-/// Asks for the rows of a patch, so that they are in the cache when its turn comes: patches lie anywhere in the image.
+/// Prefetches the rows of a patch into the cache: patches are scattered over the image.
 void prefetch(const cv::Mat& image, const cv::Point2f& centre, int window_px) {
   Corner corner{};
   if (!cornerOf(centre, window_px, image, corner)) return;
@@ -183,7 +183,7 @@ void prefetch(const cv::Mat& image, const cv::Point2f& centre, int window_px) {
 /// Moves `place` to where the template is in `image`; false when it leaves the image.
 bool settle(const Template& patch, const cv::Mat& image, const PatchFlowParams& params, float determinant,
             cv::Point2f& place) {
-  constexpr float kSwing_px = 0.01f;  // steps that take each other back so closely swing about the place
+  constexpr float kSwing_px = 0.01f;  // steps that nearly cancel each other oscillate about the place
   cv::Point2f before(0, 0);
   for (int i = 0; i < params.max_iterations; ++i) {
     Corner corner{};

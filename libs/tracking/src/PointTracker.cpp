@@ -13,11 +13,10 @@ namespace {
 constexpr double kSettled_px = 0.03;  ///< a smaller step ends optical flow: PatchAnchors places old points exactly
 constexpr double kMinTexture = 0.1;   ///< patches with less are lost: far below a corner [grey levels^2/px^2]
 constexpr int kSteadyLevels = 2;      ///< of the pyramid for points whose motion is known: 10 px of change
-constexpr int kBackwardLevels = 1;    ///< of the pyramid on the way back, which starts at the answer
-constexpr int kProven = 5;            ///< frames after which a point that looks like its patch needs no way back
-constexpr double kCrowded =
-    0.5;  ///< of the distance that new points keep: tracks may approach, but not become the same
-constexpr int kInliersForGyro = 15;       ///< with fewer their rotation does not correct that of the gyroscope
+constexpr int kBackwardLevels = 1;    ///< of the pyramid for tracking back, which starts at the result
+constexpr int kProven = 5;            ///< frames after which a point that matches its patch is not tracked back
+constexpr double kCrowded = 0.5;      ///< of the distance that new points keep: tracks may approach, but not coincide
+constexpr int kInliersForGyro = 15;   ///< with fewer their rotation does not correct that of the gyroscope
 constexpr int kInliersForDirection = 10;  ///< of a translation
 
 bool inside(const PinholeRadtan& camera, const cv::Point2f& p, double border) {
@@ -128,7 +127,7 @@ PointTracker::Followed PointTracker::follow(const ImagePyramid& pyramid, const G
     (before == residuals_.end() ? others : steady).push_back(i);
     if (before != residuals_.end()) followed.px[i] += before->second;
   }
-  // What moves as before needs few levels. New points and those that were not found are looked for from afar.
+  // Points that move as before need few levels; new points and those that were not found use all.
   followFrom(pyramid, steady, kSteadyLevels, followed);
   for (const std::size_t i : steady)
     if (followed.outcome[i] != Outcome::kTracked) {
@@ -164,7 +163,7 @@ void PointTracker::rejectByEpipolarGeometry(Followed& followed, GyroPrediction& 
       followed.outcome[index[k]] = Outcome::kLost;
       ++statistics.lost_epipolar;
     }
-  // Half of the points off any epipolar line: the scene moves or the images are bad; the gyroscope's bias is not
+  // No epipolar geometry fits half of the points: the scene moves or the images are bad; the gyroscope's bias is not
   // estimated from them.
   if (motion.inliers >= kInliersForGyro && 2 * static_cast<std::size_t>(motion.inliers) > pairs.size())
     gyro.correct(motion.delta, motion.information);

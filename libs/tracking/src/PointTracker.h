@@ -34,12 +34,12 @@ struct PointMotion {
   const StepTranslation& step;         ///< of the camera
 };
 
-/// KLT tracks of corners from frame to frame. A point lost is lost: no re-detection under the old identity.
+/// KLT tracks of corners from frame to frame. A lost point is not detected again under its identity.
 class PointTracker {
  public:
   PointTracker(const Rig& rig, const PointTrackerParams& params);
 
-  /// Follows the points into the pyramid's current frame, improves `gyro` by what they saw, and adds new ones.
+  /// Follows the points into the pyramid's current frame, corrects `gyro` by their motion, and adds new ones.
   void process(const ImagePyramid& pyramid, GyroPrediction& gyro, FrontEndStatistics& statistics);
 
   /// Points of the current frame, ascending id.
@@ -53,8 +53,8 @@ class PointTracker {
     std::vector<Outcome> outcome;
   };
 
-  /// Follows the points of `indices` from where `followed` guesses them; those that are not held to their patch also
-  /// back.
+  /// Follows the points of `indices` from where `followed` guesses them; those that were not registered to their
+  /// patch also back.
   void followFrom(const ImagePyramid& pyramid, const std::vector<std::size_t>& indices, int levels, Followed& followed);
   void followBack(const ImagePyramid& pyramid, const std::vector<std::size_t>& indices, Followed& followed) const;
   Followed follow(const ImagePyramid& pyramid, const GyroPrediction& gyro, PointStatistics& statistics);

@@ -17,8 +17,8 @@ struct InverseDepth {
 };
 
 /// The camera's translation in the last step, in a unit of its own that stays the same from step to step: the tracked
-/// points' inverse depths carry it on. The direction is that of the points' epipolar lines. What has been seen to move
-/// can so be expected to move on in accordance with its depth, whatever the camera does.
+/// points' inverse depths carry it on. The direction is that of the points' epipolar lines. With it the
+/// motion of a feature of known depth is predicted for any motion of the camera.
 class StepTranslation {
  public:
   struct Pair {
@@ -34,7 +34,7 @@ class StepTranslation {
 
   /// Origin of the old camera in the new one's frame.
   const Eigen::Vector3d& t_c1() const { return t_c1_; }
-  /// Inverse depths are valid within one epoch; the unit is lost when too few points live on.
+  /// Inverse depths are valid within one epoch; the unit is lost when too few points continue.
   int epoch() const { return epoch_; }
   /// Median inverse depth of the points; 0 without any.
   double typicalInverseDepth() const { return typical_; }
@@ -52,7 +52,7 @@ class StepTranslation {
   std::map<TrackId, InverseDepth> points_;
 };
 
-/// What the camera's translation does to a point at `x` (turned into the new frame, normalised): its image moves by
+/// Effect of the camera's translation on a point at `x` (turned into the new frame, normalised): its image moves by
 /// w / (1 + w t_z) times this.
 inline Eigen::Vector2d parallaxDirection(const Eigen::Vector2d& x, const Eigen::Vector3d& t_c1) {
   return t_c1.head<2>() - x * t_c1.z();

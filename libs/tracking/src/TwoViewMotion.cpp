@@ -15,7 +15,7 @@ namespace {
 using Vector5d = Eigen::Matrix<double, 5, 1>;
 using Matrix5d = Eigen::Matrix<double, 5, 5>;
 
-constexpr std::size_t kMinPairs = 8;     // five unknowns, and some to tell outliers by
+constexpr std::size_t kMinPairs = 8;     // five unknowns, and redundancy to detect outliers
 constexpr double kConverged_rad = 1e-5;  // less than a hundredth of a pixel
 constexpr double kRobustScale = 2;       // standard deviations from which on a point loses weight (Cauchy)
 constexpr double kDirectionPrior = 1;    // damping of the direction [1/rad^2]: far below what a translation gives
@@ -47,7 +47,7 @@ std::vector<Rays> turnedRays(const std::vector<TwoViewPair>& pairs, const Eigen:
 }
 
 /// Signed distance of f1 from the epipolar line of f0, normalised units. Never more than the distance from f0 to f1,
-/// because the line passes through f0: a point that just follows the rotation fits any translation.
+/// because the line passes through f0: a point that only follows the rotation fits any translation.
 double epipolarDistance(const Rays& ray, const Eigen::Vector3d& t) {
   const Eigen::Vector3d line = t.cross(ray.f0);
   return line.dot(ray.f1) / std::max(line.head<2>().norm(), 1e-9);
@@ -141,7 +141,7 @@ TwoViewMotion twoViewMotion(const std::vector<TwoViewPair>& pairs, const Eigen::
 
   std::vector<Rays> rays = turnedRays(pairs, R_predicted.toRotationMatrix());
   const double threshold = params.threshold_px / params.focal_px;
-  // An uncertain rotation moves every point: hypotheses are judged with that much more tolerance.
+  // An uncertain rotation moves every point: the tolerance of the hypotheses is larger by that.
   const double rotation_sigma = std::sqrt(R_information.inverse().trace() / 3);
   motion.direction = bestDirection(rays, threshold + rotation_sigma, params.hypotheses);
   refine(rays, R_information, params, motion);

@@ -15,7 +15,7 @@ struct TwoViewPair {
 /// Relative motion of two views from points, the rotation known roughly.
 struct TwoViewMotion {
   Eigen::Vector3d delta = Eigen::Vector3d::Zero();        ///< R_c1_c0 = Exp(delta) * R_predicted [rad]
-  Eigen::Matrix3d information = Eigen::Matrix3d::Zero();  ///< of delta, from the images alone [1/rad^2]
+  Eigen::Matrix3d information = Eigen::Matrix3d::Zero();  ///< of delta, from the images only [1/rad^2]
   Eigen::Vector3d direction = Eigen::Vector3d::UnitX();   ///< unit translation direction in c1, sign open
   std::vector<char> inlier;                               ///< per pair
   int inliers = 0;

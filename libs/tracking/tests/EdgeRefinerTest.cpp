@@ -88,7 +88,7 @@ TEST_F(EdgeRefinerTest, findsABlurredEdgeAtHalfResolution) {
   const auto refined = refiner_.refine(pyramid_, line(-0.4, -0.125, 0.4, -0.125), 3, 0);
   ASSERT_TRUE(refined);
   EXPECT_NEAR(0.5 * (refined->line.start.y() + refined->line.end.y()), focal * -0.15 + 6, 1.0);
-  EXPECT_GT(refined->sigma_px, 0.45);  // says that it is not as sure
+  EXPECT_GT(refined->sigma_px, 0.45);  // larger, as the edge is blurred
 }
 
 TEST_F(EdgeRefinerTest, findsNothingOnAPlainImage) {

@@ -55,7 +55,7 @@ TEST(LineDepth, isLinearAlongTheImage) {
   EXPECT_GT(longer.end.variance, depth.end.variance);  // beyond what has been seen
 }
 
-TEST(LineDepth, knowsNothingWithoutTranslation) {
+TEST(LineDepth, isUnknownWithoutTranslation) {
   const Eigen::Vector3d a(-0.5, -1, 3), b(-0.2, 1, 4);
   const LineDepth depth{{0.5, 0.25}, {0.5, 0.25}, 1};
   const ImageLine line = imageOf(a, b);

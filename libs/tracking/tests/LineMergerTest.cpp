@@ -42,7 +42,7 @@ TEST(LineMerger, keepsOppositeContrastDistantAndTiltedApart) {
   EXPECT_EQ(merged.fresh.size(), others.size());
 }
 
-TEST(LineMerger, knowsDuplicates) {
+TEST(LineMerger, findsDuplicates) {
   const LineMerger merger({});
   EXPECT_TRUE(merger.duplicates(horizontal(0, 100, 0), horizontal(30, 90, 1)));
   EXPECT_TRUE(merger.duplicates(horizontal(30, 90, 1), horizontal(0, 100, 0)));

@@ -49,7 +49,7 @@ TEST(TwoViewMotion, keepsEverythingAtRestAndStillSeesTheRotation) {
   EXPECT_LT((motion.delta - error).norm(), 2e-4);
 }
 
-TEST(TwoViewMotion, leavesFewPointsAlone) {
+TEST(TwoViewMotion, estimatesNothingFromFewPoints) {
   const TwoViewMotion motion =
       twoViewMotion(std::vector<TwoViewPair>(5), Eigen::Quaterniond::Identity(), kLooseRotation, {});
   EXPECT_EQ(motion.inliers, 5);

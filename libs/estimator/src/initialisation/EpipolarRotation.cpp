@@ -50,7 +50,8 @@ void addPair(const FramePair& pair, const Eigen::Vector3d& bias_gyro, double wid
     system.weights += w;
     system.cost += width_rad * width_rad * std::log1p(scaled * scaled);
   }
-  // the translation's direction follows the bias: eliminated, else the two would only creep along together
+  // the translation's direction is correlated with the bias: it is eliminated, as alternating steps would converge
+  // slowly
   const Eigen::Matrix<double, 3, 2> gain = Hbt * Htt.inverse();
   system.H -= gain * Hbt.transpose();
   system.b -= gain * bt;

@@ -11,7 +11,7 @@ namespace lintel {
 /// Velocity and gravity in closed form [DongSi2012]: with the gyro's rotations every camera position is linear in the
 /// first velocity and in gravity, and so is every point's place along its first ray. All rays together give a linear
 /// system; points are eliminated, |g| is kept by a Lagrange multiplier. Distances weigh as 1/depth after a first round,
-/// so that errors count as angles; rays that disagree lose their weight.
+/// so that errors count as angles; rays that disagree get less weight.
 struct GravityAlignment {
   Eigen::Vector3d v_b0 = Eigen::Vector3d::Zero();  ///< velocity at the first frame, its body axes [m/s]
   Eigen::Vector3d g_b0 = Eigen::Vector3d::Zero();  ///< gravity, body axes of the first frame [m/s^2]

@@ -8,7 +8,7 @@
 
 namespace lintel {
 
-/// Gyro bias from images alone, without knowing translation or structure: between two cameras all epipolar plane
+/// Gyro bias from images and gyroscope, without translation or structure: between two cameras all epipolar plane
 /// normals x_a x (R_ab x_b) are perpendicular to the translation, whatever its length. The bias that makes them so for
 /// many pairs of frames at once is found by Gauss-Newton [Kneip2013, He2023]. Robust to outliers (Cauchy weights).
 /// Returns the bias [rad/s]; `rms_rad` is the remaining coplanarity error.

@@ -112,14 +112,14 @@ std::string Initializer::startStatic(SlidingWindow& window) const {
 std::string Initializer::startMoving(SlidingWindow& window) const {
   const double parallax = medianDisparityPx(window, 0, window.frames.size() - 1, true);
   const double half = medianDisparityPx(window, window.frames.size() / 2, window.frames.size() - 1, true);
-  // A full buffer holds all the parallax that there will be of a slow motion; the sigma of the scale decides then.
+  // With a full buffer waiting adds no parallax: the sigma of the scale decides then.
   const bool full = static_cast<int>(window.frames.size()) >= params_.initializer.max_frames;
   if (std::max(parallax, half) < params_.initializer.min_parallax_px * (full ? 0.5 : 1)) return "waiting for parallax";
 
   const GyroAlignment gyro = alignGyro(window);
   if (!gyro.ok) return "the gyroscope does not agree with the images";
-  // Where parallax is small, a slow turn and a slow shift look alike: the epipolar constraint may then be off by more
-  // than gyroscopes are. Both are tried, and the measurements decide.
+  // Where parallax is small, a slow rotation and a slow translation look alike: the bias from the epipolar constraint
+  // may then be off by more than a gyroscope's. Both are tried, and the measurements decide.
   std::string problem;
   std::optional<SlidingWindow> best;
   double least = std::numeric_limits<double>::infinity();
@@ -187,7 +187,7 @@ void Initializer::adjust(SlidingWindow& window) const {
                std::numeric_limits<double>::infinity());
   CalibrationParams frozen = params_.calibration;
   frozen.refine_extrinsics = frozen.refine_camera = false;
-  // an offset that is known from a search alone, to some milliseconds, would pass for a bias
+  // an offset that is known from a search alone, to some milliseconds, would be taken for a bias
   frozen.refine_time_offset &= frozen.time_offset_sigma_s > kKnownOffset_s;
   LandmarkParams loose = params_.landmarks;
   // The first poses are rough: their errors are angles, and so are these limits.

@@ -15,7 +15,7 @@ constexpr double kBorder_px = 12;           // nearer to the image's border an e
 constexpr double kSigmaAlong_px = 2;        // of an end along its line, at best
 constexpr double kMaxError_px = 3;          // rms; above, the end is no fixed point
 constexpr double kMaxRelativeSigma = 0.15;  // of the depth
-constexpr std::size_t kLeastSightings = 4;  // three unknowns, and some to judge by
+constexpr std::size_t kLeastSightings = 4;  // three unknowns, and redundancy to detect outliers
 
 struct SeenPoint {
   EndsVerdict verdict = EndsVerdict::kNoCorners;

@@ -8,7 +8,7 @@
 namespace lintel {
 
 enum class EndsVerdict {
-  kNoCorners,  ///< an end lies at the image's border or jumps about (occlusion, fragmentation)
+  kNoCorners,  ///< an end lies at the image's border or is not stable (occlusion, fragmentation)
   kTooEarly,   ///< the ends look fixed, but have no parallax yet
   kCorners,
 };

@@ -27,11 +27,12 @@ double planeSigma(const SlidingWindow& window, const FactorParams& params, const
 /// the line passes the epipoles of all of them ([Lim2021] eq. epipole). Zero too when the cameras are in one place.
 double epipoleAngle(const SlidingWindow& window, const LineTrack& track);
 
-/// What to think of a triangulated line whose sigmas are up to date; `depth_m`: of its middle in the newest sighting.
+/// Whether a triangulated line whose sigmas are up to date is degenerate, and why; `depth_m`: of its middle in the
+/// newest sighting.
 LineVerdict judgeLine(const SlidingWindow& window, const DegeneracyParams& params, const LineTrack& track,
                       double depth_m);
 
-/// Whether a line is part of the problem: good ones, and degenerate ones as `params.lines` says.
+/// Whether a line is part of the problem: well-determined ones, and degenerate ones as `params.lines` says.
 bool entersProblem(const LineTrack& track, const DegeneracyParams& params);
 
 }  // namespace lintel

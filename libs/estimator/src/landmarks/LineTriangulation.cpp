@@ -20,7 +20,7 @@ struct KnownDirection {
   double sigma_rad;
 };
 
-/// Normal equations of the line alone, poses and calibration fixed.
+/// Normal equations of one line, poses and calibration fixed.
 NormalEquations4 normalEquations(const SlidingWindow& window, const FactorParams& params, const LineTrack& track,
                                  const LineBlock& line, const KnownDirection* known = nullptr) {
   NormalEquations4 normal;
@@ -144,7 +144,7 @@ double lineError(const SlidingWindow& window, const LineTrack& track) {
 }
 
 void updateLineUncertainty(const SlidingWindow& window, const EstimatorParams& params, LineTrack& track) {
-  // after marginalisation has used its sightings a line lives on with what was known
+  // after marginalisation has used its sightings a line keeps its last estimate
   if (!track.distance_known) return;
   if (track.verdict != LineVerdict::kNone &&
       static_cast<int>(track.sightings.size()) < params.landmarks.line_min_observations)
@@ -167,14 +167,14 @@ bool triangulateLine(const SlidingWindow& window, const EstimatorParams& params,
     track.sigma_direction_rad = track.sigma_distance_m = std::numeric_limits<double>::infinity();
     return false;
   }
-  // A line that is far from being determined is not worth refining: its cheap estimate says so already.
+  // A line that is far from being determined is not worth refining: its approximate sigmas show that already.
   updateLineUncertainty(window, params, track);
-  constexpr double kHopeless = 3;  // times the limit: the cheap estimate is wrong by less
-  if (track.sigma_direction_rad > kHopeless * params.degeneracy.max_sigma_direction_rad)
+  constexpr double kFarAbove = 3;  // times the limit: the approximation is wrong by less
+  if (track.sigma_direction_rad > kFarAbove * params.degeneracy.max_sigma_direction_rad)
     return track.triangulated = true;
   refine(window, params.factors, track);
   if (!(lineError(window, track) < params.landmarks.line_max_error_px)) {
-    if (!track.degenerate()) track.verdict = LineVerdict::kNone;  // it is no line; a degenerate one may still be
+    if (!track.degenerate()) track.verdict = LineVerdict::kNone;  // an outlier, unless it is degenerate
     return track.triangulated = track.degenerate() && params.degeneracy.lines == "use";
   }
   track.triangulated = true;
@@ -184,7 +184,7 @@ bool triangulateLine(const SlidingWindow& window, const EstimatorParams& params,
 
 bool triangulateTied(const SlidingWindow& window, const EstimatorParams& params, LineTrack& track,
                      const Eigen::Vector3d& d_w) {
-  // Of the depth. A distance known worse than that follows the noise of the direction, and drags the poses along: in
+  // Of the depth. A distance known worse than that follows the noise of the direction, and biases the poses: in
   // the scene of rails the trajectory was 17 % worse than without them at 1, 3 % at 0.05. Beyond, only the direction
   // counts.
   constexpr double kMaxRelativeSigma = 0.05;

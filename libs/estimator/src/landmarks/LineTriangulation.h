@@ -12,7 +12,7 @@ namespace lintel {
 /// A line from all its observation planes at once (the null space of their normals; for two planes the dual Plücker
 /// matrix of [Lim2021, eq. dual_plucker]), refined on the line residual with the window's poses. Sets line, origin_w,
 /// sigmas, verdict and triangulated. Returns false when it cannot be a line in front of the cameras; a degenerate
-/// verdict then says that this may be for want of information.
+/// verdict then says that the reason may be a lack of information.
 bool triangulateLine(const SlidingWindow& window, const EstimatorParams& params, LineTrack& track);
 
 /// The same for a line whose direction is known from its group, starting at `track.line`. Returns false, and leaves the

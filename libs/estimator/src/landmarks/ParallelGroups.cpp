@@ -16,11 +16,11 @@ namespace lintel {
 
 namespace {
 
-constexpr double kKnown_rad = 0.03;        // a direction known this well is a witness
+constexpr double kKnown_rad = 0.03;        // a direction known this well supports a group
 constexpr double kSame_rad = 0.035;        // directions closer than this are taken as one
 constexpr double kApart_rad = 0.10;        // a new direction is at least this far from the others
 constexpr double kLeastSigma_rad = 0.004;  // of an observation plane: poses and calibration have errors too
-constexpr double kByChance = 0.05;         // share of arbitrary lines whose planes contain a given direction, at most
+constexpr double kRandomShare = 0.05;      // share of arbitrary lines whose planes contain a given direction, at most
 constexpr double kContradiction_rad = 0.08, kContradiction = 2.5;  // of ends with a direction; in standard deviations
 constexpr FrameId kForget = 100;  // window frames after which an unused direction is forgotten
 
@@ -156,7 +156,7 @@ std::vector<Eigen::Vector3d> possibleDirections(const SlidingWindow& window) {
 }
 
 struct Support {
-  double score = 0;    // lines that agree, less what chance gives
+  double score = 0;    // lines that agree, less those expected of random lines
   int candidates = 0;  // degenerate ones
   Eigen::Vector3d d_w = Eigen::Vector3d::Zero();
 };
@@ -183,9 +183,9 @@ Support supportOf(SlidingWindow& window, const EstimatorParams& params, const Ei
       }
     }
   }
-  support.score -= 2 * kByChance * lines;
+  support.score -= 2 * kRandomShare * lines;
   const SymmetricEigen<3> eigen = symmetricEigen(normals);
-  // one plane only, or planes that are all the same, say nothing about a direction in them
+  // one plane only, or planes that are all the same, do not determine a direction in them
   const bool determined = eigen.values[1] > 0.01 * eigen.values[2];
   support.d_w = determined ? Eigen::Vector3d(eigen.vectors.col(0)) : d_w;
   return support;

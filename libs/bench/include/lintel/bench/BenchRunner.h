@@ -15,7 +15,7 @@ struct JobOutcome {
   std::string text;  ///< one line: what came out, or why it failed
 };
 
-/// Whether a job's result is there and is what the suite asks for today. With `retry_failed` a failure is no result.
+/// Whether a job's result is there and is what the suite asks for now. With `retry_failed` a failure is no result.
 bool isDone(const BenchJob& job, bool retry_failed = false);
 
 /// Runs jobs: lintel-sim where the recording has to be made, lintel-vio, lintel-eval, each a process of its own, so

@@ -34,7 +34,7 @@ struct BenchConfiguration {
   std::vector<std::string> settings;  ///< for lintel-vio's --set
 };
 
-/// RMSE and maximum [m] that somebody has published.
+/// RMSE and maximum [m] as published.
 struct PublishedErrors {
   double rmse_m = 0, max_m = 0;
 };

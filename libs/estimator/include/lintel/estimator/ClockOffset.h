@@ -9,22 +9,22 @@
 
 namespace lintel {
 
-/// What the turns of the camera say about the clocks of images and IMU.
+/// The offset between the clocks of images and IMU, as estimated from the camera's rotations.
 struct ClockOffset {
-  bool determined = false;  ///< the camera has turned enough to tell, and one offset fits clearly better than others
+  bool determined = false;  ///< the camera has turned enough, and one offset fits clearly better than others
   double offset_s = 0;      ///< an image with stamp t shows the world at t + offset of the IMU's clock
   double sigma_s = 0;       ///< its standard deviation
   Eigen::Vector3d bias_gyro = Eigen::Vector3d::Zero();        ///< of the whole span [rad/s]
   Eigen::Vector3d bias_gyro_sigma = Eigen::Vector3d::Zero();  ///< its standard deviations
   double rms_px = 0;                                          ///< what remains of the epipolar constraint at the offset
-  double rms_still_px = 0;                                    ///< the same if the gyroscope said nothing
+  double rms_still_px = 0;                                    ///< the same without the gyroscope's rotations
 };
 
 constexpr double kLargestClockOffset_s = 0.1;
 
 /// Searches the offset at which the gyroscope's rotations fit the images' points best: for every offset on a grid
 /// gyro bias and all directions of translation are estimated anew (EpipolarRotation), so that neither a bias nor
-/// parallax passes for an offset. `frames` and `imu` ascend in time; pairs of frames whose surroundings the IMU does
+/// parallax is taken for an offset. `frames` and `imu` ascend in time; pairs of frames whose surroundings the IMU does
 /// not cover are left out.
 ClockOffset findClockOffset(const std::vector<FrameTracks>& frames, const ImuBatch& imu, const Rig& rig);
 

@@ -30,8 +30,8 @@ struct CalibrationEstimate {
 };
 
 /// Point-line visual-inertial odometry in a sliding window [Qin2018, Lim2021]: tracks and IMU in, poses and retired
-/// landmarks out. Only sequences: initialisation, triangulation, adjustment, outliers, failure, marginalisation.
-/// Deterministic.
+/// landmarks out. Calls the steps in order: initialisation, triangulation, adjustment, outliers, failure,
+/// marginalisation. Deterministic.
 class Estimator {
  public:
   /// Throws std::invalid_argument, naming the parameter, when one is out of range.

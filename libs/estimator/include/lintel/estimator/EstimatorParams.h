@@ -91,7 +91,7 @@ struct DegeneracyParams {
   double structural_sigma_rad = 0.01;     ///< how parallel the lines of a group are
   double structural_loss_width = 2.0;     ///< Cauchy width, in standard deviations
   double max_misfit = 2.0;                ///< of a line's planes with the group's direction, in standard deviations
-  int min_group = 3;                      ///< lines that agree before a direction is believed
+  int min_group = 3;                      ///< lines that must agree, beyond those expected of random lines
 
   template <class F>
   void fields(F&& field) {
@@ -139,7 +139,7 @@ struct InitializerParams {
 
 /// What counts as lost.
 struct FailureParams {
-  int min_points = 4;           ///< points and lines tracked into the newest frame; with fewer it is blind
+  int min_points = 4;  ///< points and lines tracked into the newest frame; with fewer it counts as without images
   int max_blind_frames = 20;    ///< window frames in a row that the IMU may bridge
   double max_bias_accel = 2.5;  ///< [m/s^2] [Qin2018]
   double max_bias_gyro = 1.0;   ///< [rad/s] [Qin2018]

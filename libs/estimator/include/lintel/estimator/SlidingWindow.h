@@ -85,7 +85,7 @@ struct SharedDirection {
   FrameId last_used = 0;  ///< newest frame that had a member
 };
 
-/// A line as it was known once.
+/// A line's estimate at an earlier time.
 struct KnownLine {
   LineBlock line = LineBlock::Zero();
   Eigen::Vector3d origin_w = Eigen::Vector3d::Zero();
@@ -116,7 +116,7 @@ struct WindowPrior {
   std::shared_ptr<const PriorFactor> factor;
 };
 
-/// The states and tracks of the sliding window; what the other classes of this room work on. Knows no algorithm.
+/// The states and tracks of the sliding window; what the other classes of this room work on, without any algorithm.
 class SlidingWindow {
  public:
   explicit SlidingWindow(const Rig& rig);

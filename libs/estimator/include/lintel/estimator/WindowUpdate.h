@@ -29,7 +29,7 @@ struct RetiredPoint {
   Eigen::Vector3d p_w = Eigen::Vector3d::Zero();
   double sigma_distance_m = 0;
   std::vector<PointSighting> sightings;  ///< in keyframes
-  bool triangulated = true;              ///< false: position and sigma say nothing, the window could not place it
+  bool triangulated = true;              ///< false: position and sigma are not valid, it could not be triangulated
 };
 
 /// A line that is not tracked any more.
@@ -40,7 +40,7 @@ struct RetiredLine {
   bool degenerate = false;
   std::uint64_t group = 0;              ///< parallel group whose direction it was tied to (constrained); 0: none
   std::vector<LineSighting> sightings;  ///< in keyframes
-  bool triangulated = true;             ///< false: line and sigmas say nothing, the window could not place it
+  bool triangulated = true;             ///< false: line and sigmas are not valid, it could not be triangulated
 };
 
 enum class EstimatorStatus {

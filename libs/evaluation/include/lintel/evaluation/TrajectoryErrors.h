@@ -46,18 +46,18 @@ struct TrajectoryErrors {
   std::size_t poses = 0;  ///< estimated
   std::size_t pairs = 0;  ///< of these with a true partner
   AlignmentKind alignment = AlignmentKind::kSe3;
-  Similarity S_truth_estimate;      ///< the alignment that the errors below are taken after
-  ErrorStatistics position_m;       ///< ATE
-  ErrorStatistics rotation_rad;     ///< angle between orientations; means something if both are of the same body frame
-  double scale = 1;                 ///< of the Sim(3) alignment: truth / estimate; 1 = right
-  ErrorStatistics position_sim3_m;  ///< ATE after Sim(3) alignment
-  double start_offset_s = 0;        ///< first pair after the start of the ground truth
+  Similarity S_truth_estimate;        ///< the alignment that the errors below are taken after
+  ErrorStatistics position_m;         ///< ATE
+  ErrorStatistics rotation_rad;       ///< angle between orientations; meaningful if both are of the same body frame
+  double scale = 1;                   ///< of the Sim(3) alignment: truth / estimate; 1 = right
+  ErrorStatistics position_sim3_m;    ///< ATE after Sim(3) alignment
+  double start_offset_s = 0;          ///< first pair after the start of the ground truth
   double duration_s = 0, path_m = 0;  ///< of the whole ground truth
   double coverage_time = 0;  ///< share of the ground truth's duration between neighbouring pairs (gaps left out)
   double coverage_path = 0;  ///< share of the ground truth's path between neighbouring pairs (gaps left out)
   bool complete = false;     ///< covers at least `complete_share` of what can be covered: comparable with others
   /// RMSE over the whole duration of the ground truth [m]: where there is no estimate, the one nearest in time stands
-  /// in. What a run leaves out costs it what the vehicle moved meanwhile: no run gains by stopping early.
+  /// in. What a run leaves out adds the vehicle's motion meanwhile, so that stopping early does not lower the error.
   double whole_rmse_m = 0;
   std::vector<RelativeErrors> relative;                 ///< one for each distance, then the whole path
   std::vector<std::pair<std::int64_t, double>> series;  ///< (time [ns], position error [m]) of every pair

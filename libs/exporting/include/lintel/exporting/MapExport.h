@@ -20,7 +20,7 @@ class ExportError : public std::runtime_error {
 };
 
 enum class LineStyle { kLines, kTubes };                         ///< one pixel wide, or four-sided tubes of triangles
-enum class LineColour { kKind, kGroup, kUncertainty, kHeight };  ///< what a line's colour says
+enum class LineColour { kKind, kGroup, kUncertainty, kHeight };  ///< what a line's colour means
 enum class MapLayer { kLines, kPoints, kKeyframes, kTrajectory };
 
 /// How a map is exported. What is left empty is chosen for the file's form, such that its usual viewer shows lines.
@@ -43,7 +43,7 @@ struct ExportSummary {
   std::vector<std::string> files;  ///< written; the first is the one to open
 };
 
-/// File name extensions that exportMap knows, without the dot.
+/// File name extensions that exportMap accepts, without the dot.
 std::vector<std::string> exportFormats();
 
 /// How a file of this extension is looked at, one line without a stop ("" for an unknown one).

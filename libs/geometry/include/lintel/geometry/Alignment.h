@@ -31,7 +31,7 @@ struct Similarity {
 
 /// The least-squares transform of `kind` that takes positions `from_b` to their partners `to_a`, all [m]
 /// [Umeyama1991]; the yaw form is the same problem restricted to rotations about z, in closed form.
-/// What the positions leave open (a rotation about a straight line) is chosen somehow; the scale is 1 when `from_b`
+/// What the positions do not determine (a rotation about a straight line) is arbitrary; the scale is 1 when `from_b`
 /// does not move. Throws std::invalid_argument when the numbers of positions differ or there are none.
 Similarity alignPositions(AlignmentKind kind, const std::vector<Eigen::Vector3d>& from_b,
                           const std::vector<Eigen::Vector3d>& to_a);

@@ -9,11 +9,11 @@
 
 namespace lintel {
 
-/// What the accelerometer's values say about its unit and axes, whatever an estimator made of them.
+/// Checks the accelerometer's unit and axes by its values, independently of the estimator.
 ///
 /// Size: over a second, a body that is carried or flies changes its speed little: the mean specific force is gravity's.
-/// Axes: turned by the gyroscope into the axes of the start of some seconds, gravity stays where it is. If the axes
-/// of the accelerometer are not the gyroscope's, it moves; the interchange of axes with which it moves least is the
+/// Axes: turned by the gyroscope into the axes of the start of some seconds, gravity is constant. If the axes
+/// of the accelerometer are not the gyroscope's, it varies; the interchange of axes with which it varies least is the
 /// likely one.
 class AccelerometerCheck {
  public:

@@ -48,7 +48,7 @@ class NoiseMeter {
 /// Walks are given bounds of what sensors do.
 ImuNoise effectiveNoise(const ImuNoise& given, const NoiseMeter& meter);
 
-/// How far a given density is from what was measured, in words; empty where it is believed.
+/// How far a given density is from what was measured, in words; empty where it is plausible.
 std::string noiseRemark(const ImuNoise& given, const NoiseMeter& meter);
 
 }  // namespace lintel

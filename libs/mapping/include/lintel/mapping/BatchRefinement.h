@@ -25,7 +25,7 @@ struct RefinementParams {
   int max_views = 60;                          ///< of a landmark that have residuals, spread over all it has; 0: all
   double line_max_sigma_direction_rad = 0.10;  ///< vaguer lines have no residuals
   double line_max_relative_sigma = 0.10;       ///< of their distance
-  double held_out_share = 0.05;                ///< of the points: left out, to judge the result by
+  double held_out_share = 0.05;                ///< of the points: left out, to check the result with
   // acceptance
   double max_moved_share = 0.05;  ///< keyframes may move by this share of the way travelled, and
   double max_moved_m = 0.30;      ///< this much more
@@ -64,16 +64,16 @@ struct RefinementReport {
   double moved_m = 0, turned_rad = 0;                    ///< most, of a keyframe
 };
 
-/// Told at every iteration how much is done, in [0, 1]. What it answers below 1 says whether to go on: after `false`
-/// the refinement is not accepted.
+/// Called at every iteration with the share that is done, in [0, 1]. Its result below 1 says whether to go on: after
+/// `false` the refinement is not accepted.
 using RefinementProgress = std::function<bool(double)>;
 
 /// Full adjustment over all keyframes: poses, velocities, biases, calibration, points and lines; IMU between
-/// consecutive keyframes; robust losses. Landmarks that turn out to be the same are joined between the rounds: what was
-/// seen again ties the trajectory together. Deterministic; one thread.
+/// consecutive keyframes; robust losses. Landmarks found to be the same are joined between the rounds, which
+/// constrains the trajectory where a place was seen again. Deterministic; one thread.
 ///
 /// The result is checked (report.accepted): cost, points left out of the adjustment, IMU residuals, plausible
-/// changes. Whoever calls keeps what was before when it is not accepted.
+/// changes. When it is not accepted the caller keeps the former estimate.
 class BatchRefinement {
  public:
   /// Throws std::invalid_argument, naming the parameter, when one is out of range. `calibrated`: the rig as calibrated,

@@ -49,7 +49,7 @@ struct MapLine {
   double sigma_direction_rad = 0;  ///< standard deviation of the direction in its worst plane
   double sigma_distance_m = 0;     ///< standard deviation of the position, worst way across the line
   std::int64_t first_t_ns = 0, last_t_ns = 0;
-  bool degenerate = false;                       ///< its own observations leave the direction or depth open
+  bool degenerate = false;                       ///< its own observations do not determine direction or depth
   bool constrained = false;                      ///< direction taken from a group of parallel lines
   int group = -1;                                ///< place in LineMap::groups, -1 = none
   std::vector<MapLineObservation> observations;  ///< ascending keyframe id

@@ -6,10 +6,10 @@
 
 namespace lintel {
 
-/// Leaves out of the map what crowds it: of parallel lines closer than `params.spacing` says only the better seen stays
-/// (views times length). One that is seen three times as well clears twice the width. Merging has made one of those
-/// that are the same; here are joints of planks, folds and prints beside an edge, lines of their own that only blur its
-/// picture. Groups are found anew. Returns how many lines went.
+/// Removes lines beside better observed ones: of parallel lines closer than `params.spacing` only the one with the
+/// larger product of views and length stays; one whose product is three times as large removes others within twice the
+/// width. Merging has already joined estimates of the same edge; these are separate lines such as joints of planks,
+/// folds and prints beside an edge. Groups are found anew. Returns the number of removed lines.
 int spaceLines(const MapParams& params, LineMap& map);
 
 }  // namespace lintel

@@ -22,7 +22,7 @@ class MapBuilder {
   /// Calibration that the map's poses belong to.
   void setCalibration(const Rig& rig, double time_offset_s = 0);
 
-  /// All that was added, ordered, nothing judged.
+  /// All that was added, ordered, nothing left out.
   MapMaterial material() const;
 
   /// The map of everything added so far: prepareMaterial(), then drawMap().
@@ -33,7 +33,8 @@ class MapBuilder {
   MapMaterial material_;
 };
 
-/// Estimates all points and lines from all their views, with the poses as they are, and merges what is the same.
+/// Estimates all points and lines from all their views, with the poses as they are, and merges estimates of the same
+/// landmark.
 void prepareMaterial(const MapParams& params, MapMaterial& material);
 
 /// The map of what has enough evidence: enough views that agree, known well enough, of some length. Ends are where they

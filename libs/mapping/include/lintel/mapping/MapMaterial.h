@@ -69,12 +69,12 @@ struct LineRecord {
   double error_px = 0;         ///< mean distance of the inliers' ends from the projected line
   double distance_m = 0;       ///< from which it was seen, median
   bool parallel = false;       ///< the window found it parallel to others to the end
-  std::optional<LineTie> tie;  ///< where its own views leave the direction or place open
+  std::optional<LineTie> tie;  ///< where its own views do not determine direction or position
   std::vector<LineView> views;
 };
 
-/// What a run leaves behind for the map: all keyframes, points and lines with their views, and the causal trajectory.
-/// Grows with what was seen, not with the number of frames.
+/// What a run collects for the map: all keyframes, points and lines with their views, and the causal trajectory.
+/// Its size grows with the observations of keyframes.
 struct MapMaterial {
   Rig rig;                                 ///< calibration that the poses belong to
   double time_offset_s = 0;                ///< an image with stamp t shows the world at t + offset

@@ -7,17 +7,17 @@
 
 namespace lintel {
 
-/// When landmarks are the same.
+/// When two landmarks are taken as the same one.
 struct MergeParams {
   bool lines = true;
-  bool points = true;                 ///< tracks that broke: joins what was seen again
+  bool points = true;                 ///< joins tracks of the same landmark
   double max_angle_rad = 0.06;        ///< between two pieces of one line
   double max_offset_m = 0.10;         ///< across, and
   double max_relative_offset = 0.02;  ///< of the distance they were seen from: the larger one counts
   double max_gap_m = 0.10;            ///< along, between two pieces, and
   double max_relative_gap = 0.10;     ///< of the shorter one's length
   double max_error_px = 1.2;          ///< mean error of all views when joined
-  double max_drift_px = 4.0;          ///< more than that between two passes, as long as the trajectory may still move
+  double max_drift_px = 4.0;          ///< more than that between two passes, before the trajectory is refined
   double min_separation_px = 2.5;     ///< lines seen side by side in one image, farther apart, are two lines
   double point_max_error_px = 1.0;    ///< mean error of all views of a joined point
 
@@ -39,7 +39,7 @@ struct MergeParams {
 
 /// How close parallel lines may stand in the map.
 struct SpacingParams {
-  double min_m = 0.05;         ///< of those closer only the better seen is drawn; 0: all are
+  double min_m = 0.05;         ///< of those closer only the better observed is drawn; 0: all are
   double min_relative = 0.03;  ///< of the distance they were seen from: the smaller one counts
 
   template <class F>
@@ -67,7 +67,7 @@ struct GroupParams {
 struct MapParams {
   int min_observations = 3;        ///< keyframes that saw a point or line
   double min_length_m = 0.05;      ///< of a segment
-  double min_depth_m = 0.1;        ///< nearer things are none
+  double min_depth_m = 0.1;        ///< nearer landmarks are left out
   double max_error_px = 1.5;       ///< mean distance of the views from the projected line
   double view_max_error_px = 3.0;  ///< a view farther off is an outlier
   double min_inlier_share = 0.6;   ///< of a line's views

@@ -47,8 +47,8 @@ struct OdometryResult {
   CalibrationEstimate window_calibration;  ///< as the last window had it, before any batch refinement
   double time_offset_s = 0;
   OdometryStatistics statistics;
-  std::vector<std::string> remarks;  ///< what the recording says of itself and was corrected, in words
-  std::string verdict;  ///< why trajectory and map must not be trusted; empty when nothing contradicts them
+  std::vector<std::string> remarks;  ///< what was corrected of the recording's own data, in words
+  std::string verdict;               ///< why trajectory and map are probably wrong; empty when no check fails
   bool cancelled =
       false;          ///< RunOptions::cancelled ended the run: trajectory and map are those of the frames until then
   std::string error;  ///< why the recording ended early; empty when it was read to its end or cancelled

@@ -19,7 +19,7 @@ struct ImuSimulatorParams {
   double initial_gyro_bias = 0.02;   ///< standard deviation of the initial bias per axis [rad/s]
   double initial_accel_bias = 0.06;  ///< the same of the accelerometer [m/s^2]
   double noise_scale = 1;            ///< scales all four densities; sensor.yaml keeps the rig's
-  double walk_scale = 1;             ///< scales the biases' walks in addition: how fast they roll away
+  double walk_scale = 1;             ///< scales the biases' walks in addition: how fast they drift
   std::uint64_t seed = 1;
 
   template <class F>

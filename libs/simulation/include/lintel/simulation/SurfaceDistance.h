@@ -11,7 +11,7 @@ namespace lintel {
 /// threads.
 class SurfaceDistance {
  public:
-  /// Reads a mesh (PLY and what else assimp knows). Throws std::runtime_error naming the file.
+  /// Reads a mesh (PLY and the other formats of assimp). Throws std::runtime_error naming the file.
   explicit SurfaceDistance(const std::string& mesh_file);
   ~SurfaceDistance();
 

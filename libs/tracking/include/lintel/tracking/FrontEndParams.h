@@ -56,24 +56,25 @@ struct PointTrackerParams {
 /// Lines: detected segments, carried from frame to frame [Lim2021, line tracking].
 struct LineTrackerParams {
   std::string mode =
-      "flow";  ///< flow: predicted by optical flow, merged with detections; descriptor: LBD matches alone (baseline)
+      "flow";  ///< flow: predicted by optical flow, merged with detections; descriptor: LBD matches only (baseline)
   std::string detector = "edge_drawing";  ///< edge_drawing or lsd (slower); both at half resolution
   int gradient_threshold = 24;            ///< of edge_drawing: Sobel response an edge must have
   int detect_every_n = 3;                 ///< frames between detections, mode flow
   int max_lines = 100;                    ///< lines held at once; older, then longer ones first
-  int sightings_before_use = 2;           ///< detections of a line before it gets an identity: chance lines stay out
-  double min_length_px = 50;              ///< of a new line [Lim2021: 50 px]
+  int sightings_before_use =
+      2;                      ///< detections of a line before it gets an identity: single false detections are left out
+  double min_length_px = 50;  ///< of a new line [Lim2021: 50 px]
   double keep_length_px = 30;             ///< a tracked line that gets shorter is lost
   int window_px = 8;                      ///< side of the KLT patch of a sample on a line; multiples of 8 are quickest
   int flow_levels = 1;                    ///< pyramid levels for the samples; those not found are looked for on all
   int max_iterations = 6;                 ///< of their KLT, per level
   int min_samples = 5;                    ///< on a short line
   int max_samples = 6;                    ///< on a long line
-  double max_jump_px = 8;         ///< optical flow further than this from a line's steady motion is not believed
-  double refine_px = 3;           ///< how far from the prediction the edge is searched
-  double grow_px = 16;            ///< how far a line may grow along its edge in one frame, at each end
-  double merge_angle_rad = 0.07;  ///< largest angle between a prediction and a detection of the same line
-  double merge_distance_px = 3;   ///< largest distance of the detection's ends from the predicted line
+  double max_jump_px = 8;                 ///< optical flow further than this from a line's steady motion is rejected
+  double refine_px = 3;                   ///< how far from the prediction the edge is searched
+  double grow_px = 16;                    ///< how far a line may grow along its edge in one frame, at each end
+  double merge_angle_rad = 0.07;          ///< largest angle between a prediction and a detection of the same line
+  double merge_distance_px = 3;           ///< largest distance of the detection's ends from the predicted line
   int max_frames_without_detection = 20;  ///< a line that only optical flow sees is dropped after this
   int border_px = 4;                      ///< lines end this far from the image border
   int descriptor_distance = 80;  ///< largest Hamming distance of LBD descriptors (of 256 bits), mode descriptor
@@ -107,7 +108,7 @@ struct LineTrackerParams {
 /// What the front end is made of. Every value is checked by the FrontEnd's constructor.
 struct FrontEndParams {
   static constexpr OneOf kFeatures{"points points_lines"};
-  std::string features = "points_lines";  ///< or points, alone; of the whole program: not among the keys of tracking
+  std::string features = "points_lines";  ///< or points; a key of the whole program, not of tracking
   PyramidParams pyramid;
   PointTrackerParams points;
   LineTrackerParams lines;

@@ -20,7 +20,7 @@ struct StageTimes {
   double sum() const;
 };
 
-/// Lives of tracks that have ended: lifetimes[n] tracks were seen in n frames.
+/// Lifetimes of tracks that have ended: lifetimes[n] tracks were seen in n frames.
 struct TrackLifetimes {
   std::map<int, std::int64_t> ended;
 
@@ -38,7 +38,7 @@ struct PointStatistics {
   std::int64_t lost_backward = 0;  ///< forward-backward check
   std::int64_t lost_epipolar = 0;  ///< off the epipolar line
   std::int64_t lost_drift = 0;     ///< off the epipolar line over a longer baseline
-  std::int64_t lost_crowded = 0;   ///< ran into an older point
+  std::int64_t lost_crowded = 0;   ///< too close to an older point
   TrackLifetimes lifetimes;
 };
 
@@ -51,7 +51,7 @@ struct LineStatistics {
   std::int64_t flow_failed = 0;       ///< predictions without optical flow (by gyro and points nearby)
   std::int64_t lost_view = 0;         ///< left the image
   std::int64_t lost_edge = 0;         ///< no edge at the predicted place, or too short a part of it
-  std::int64_t lost_jump = 0;         ///< moved unlike anything around it: another edge
+  std::int64_t lost_jump = 0;         ///< moved differently from its surroundings: another edge
   std::int64_t lost_duplicate = 0;    ///< became the same as an older line
   std::int64_t lost_undetected = 0;   ///< not seen by the detector for too long
   std::int64_t lost_unconfirmed = 0;  ///< candidates that were gone before they got an identity
