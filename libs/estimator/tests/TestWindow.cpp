@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "TestWindow.h"
 
+#include <tuple>
+
 namespace lintel::test {
 
 Rig plainRig() {
@@ -49,8 +51,8 @@ void seeLine(SlidingWindow& window, TrackId id, FrameId frame, const Segment3& s
   track.id = id;
   LineSighting sighting;
   sighting.frame = frame;
-  sighting.start = observed(window, start_px);
-  sighting.end = observed(window, end_px);
+  std::tie(sighting.start, sighting.end) =
+      makeLineEnds(window.camera(), window.camera().normalise(start_px), window.camera().normalise(end_px));
   sighting.start_px = start_px;
   sighting.end_px = end_px;
   track.sightings.push_back(sighting);

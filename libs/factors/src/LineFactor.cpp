@@ -17,18 +17,22 @@ void LineFactor::linearise(const CameraView& view, const double* correction, con
   const Eigen::Vector3d l = view.R_c_w * (n_w + from_camera_w.cross(d_w));  // moment about the camera, its axes
   const Eigen::Vector3d ends[2] = {start_.corrected(correction).homogeneous(),
                                    end_.corrected(correction).homogeneous()};
-  const LineDistances distances(ends, l, weight_);
-  out.residual = distances.residual;
+  const LineDistances distances(ends, l, 1);
+  const Eigen::Vector2d scale = weight_ * Eigen::Vector2d(start_.scale_px(correction), end_.scale_px(correction));
+  out.residual = scale.cwiseProduct(distances.residual);
   if (!jacobians) return;
 
   const Eigen::Vector2d& normal = distances.normal;
   Eigen::Matrix<double, 2, 3> d_l;
-  d_l << distances.d_l[0], distances.d_l[1];
+  d_l << scale[0] * distances.d_l[0], scale[1] * distances.d_l[1];
   const Eigen::Matrix<double, 2, 3> d_nw = d_l * view.R_c_w;
   out.d_camera.leftCols<3>() = d_nw * skew(d_w);
   out.d_camera.rightCols<3>() = d_l * skew(l);
-  out.d_intrinsics.row(0) = weight_ * normal.transpose() * start_.correction_jacobian.leftCols<kIntrinsicsSize>();
-  out.d_intrinsics.row(1) = weight_ * normal.transpose() * end_.correction_jacobian.leftCols<kIntrinsicsSize>();
+  const LineEnd* seen[] = {&start_, &end_};
+  for (int k = 0; k < 2; ++k)
+    out.d_intrinsics.row(k) = scale[k] * normal.transpose() * seen[k]->correction_jacobian.leftCols<kIntrinsicsSize>() +
+                              weight_ * seen[k]->calibrated_scale_px * distances.residual[k] *
+                                  seen[k]->log_scale_jacobian.leftCols<kIntrinsicsSize>();
   const Eigen::Matrix<double, 2, 3> d_dw = d_nw * skew(from_camera_w);
   // u1 and u2 turn with U: d(U e) = -U [e]x dpsi
   const Eigen::Matrix<double, 2, 3> nU = cosine * d_nw * U, dU = sine * d_dw * U;

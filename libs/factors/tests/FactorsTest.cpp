@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 
+#include "lintel/factors/ImageObservations.h"
 #include "lintel/factors/ImuFactor.h"
 #include "lintel/factors/LineFactor.h"
 #include "lintel/factors/Manifolds.h"
@@ -46,6 +47,14 @@ NormalisedObservation observation(double x, double y) {
   o.correction_jacobian(0, 2) = -0.02;
   o.correction_jacobian.col(kTimeOffsetAt).setZero();
   return o;
+}
+
+LineEnd lineEnd(double x, double y, double scale_px) {
+  LineEnd end;
+  static_cast<NormalisedObservation&>(end) = observation(x, y);
+  end.calibrated_scale_px = scale_px;
+  end.log_scale_jacobian << 0.002, 0.003, -0.001, 0.004, 0.2, 0.1, 0;
+  return end;
 }
 
 struct Scene {
@@ -109,7 +118,7 @@ TEST(LineFactor, HandComputed) {
   const LineBlock line = toBlock(toOrthonormal(movedOrigin(lineThrough({-1, 2, 4}, {1, 2, 4}), origin)));
   const PoseBlock identity = toBlock(Pose{});
   const CorrectionBlock zero = CorrectionBlock::Zero();
-  LineFactor factor(observation(-0.3, 0.5), observation(0.3, 0.6), {}, origin, 100);
+  LineFactor factor(lineEnd(-0.3, 0.5, 50), lineEnd(0.3, 0.6, 50), {}, origin, 0.5);
   const double* blocks[] = {identity.data(), identity.data(), zero.data(), line.data()};
   Eigen::Vector2d r;
   ASSERT_TRUE(factor.Evaluate(blocks, r.data(), nullptr));
@@ -126,10 +135,51 @@ TEST(LineFactor, GradientsFromFarToNearlyThroughTheCameraAndTheOrigin) {
     for (const double offset : {1e-3, 0.3, 2.0}) {
       const Eigen::Vector3d origin = p0 + offset * Eigen::Vector3d(0.3, -0.5, 0.8);
       const LineBlock line = toBlock(toOrthonormal(movedOrigin(lineThrough(p0, p1), origin)));
-      LineFactor factor(observation(0.12, -0.2), observation(0.3, 0.08), kMotion, origin, 300);
+      LineFactor factor(lineEnd(0.12, -0.2, 300), lineEnd(0.3, 0.08, 290), kMotion, origin, 0.8);
       expectGradients(factor, {&kPoseManifold, &kPoseManifold, nullptr, &kLineManifold},
                       {s.T_w_bi.data(), s.T_b_c.data(), s.correction.data(), line.data()}, 1e-5);
     }
+  }
+}
+
+TEST(LineFactor, IsInPixelsOfTheCorrectedCamera) {
+  // Whatever the correction: the distance of the observed pixels to the image of the line.
+  const PinholeRadtan camera = eurocCamera();
+  const PoseBlock identity = toBlock(Pose{});
+  for (const Eigen::Vector2d& at : {Eigen::Vector2d(100, 60), Eigen::Vector2d(400, 250), Eigen::Vector2d(700, 420)})
+    for (const double angle : {0.0, 0.7, 1.5}) {
+      const Eigen::Vector2d along(std::cos(angle), std::sin(angle)), across(-along.y(), along.x());
+      CorrectionBlock correction;
+      correction << 2, -1.5, 1, 1, 0.003, -0.002, 0;
+      const PinholeRadtan corrected = correctedCamera(camera, correction.data());
+      // a line through the image of two points, seen 2 px beside it
+      const auto ray = [&](const Eigen::Vector2d& px) { return corrected.normalise(px).homogeneous().eval(); };
+      const LineBlock line = toBlock(toOrthonormal(lineThrough(ray(at - 20 * along), ray(at + 20 * along))));
+      const auto [start, end] = makeLineEnds(camera, camera.normalise(at - 20 * along + 2 * across),
+                                             camera.normalise(at + 20 * along + 2 * across));
+      const double* blocks[] = {identity.data(), identity.data(), correction.data(), line.data()};
+      Eigen::Vector2d r;
+      ASSERT_TRUE(LineFactor(start, end, {}, Eigen::Vector3d::Zero(), 0.5).Evaluate(blocks, r.data(), nullptr));
+      EXPECT_NEAR(std::abs(r[0]), 4, 0.05) << at.transpose() << " " << angle;
+      EXPECT_NEAR(std::abs(r[1]), 4, 0.05) << at.transpose() << " " << angle;
+    }
+}
+
+TEST(LineEnd, ScaleFollowsTheCorrection) {
+  const PinholeRadtan camera = eurocCamera();
+  const Eigen::Vector2d start_px(80, 50), end_px(180, 130);
+  const LineEnd end = makeLineEnds(camera, camera.normalise(start_px), camera.normalise(end_px)).first;
+  for (int k = 0; k < kTimeOffsetAt; ++k) {
+    const double step = k < 4 ? 0.1 : 1e-3;
+    const auto scale = [&](double by) {
+      CorrectionBlock correction = CorrectionBlock::Zero();
+      correction[k] = by;
+      const PinholeRadtan moved = correctedCamera(camera, correction.data());
+      return makeLineEnds(moved, moved.normalise(start_px), moved.normalise(end_px)).first.calibrated_scale_px;
+    };
+    const double numeric = (scale(step) - scale(-step)) / (2 * step) / end.calibrated_scale_px;
+    // the line's own turn on the normalised plane is left out
+    EXPECT_NEAR(end.log_scale_jacobian[k], numeric, 0.05 * std::abs(numeric) + 1e-6) << k;
   }
 }
 
@@ -254,6 +304,88 @@ TEST(BlockPrior, WeighsBySigmaAndLeavesInfiniteOnesFree) {
   Eigen::Vector3d r;
   ASSERT_TRUE(prior->Evaluate(blocks, r.data(), nullptr));
   EXPECT_TRUE(r.isApprox(Eigen::Vector3d(2, 0, 1)));
+}
+
+/// A prior over two poses, a motion and the extrinsics, away from its linearisation, with A = N (I - G G^+): blind to
+/// the gauge where it was linearised, as marginalisation leaves it.
+struct GaugeFreePrior {
+  std::vector<Pose> poses_0{{expRotation({0.1, -0.2, 0.3}), {0.5, 0.2, -0.1}},
+                            {expRotation({0.2, 0.1, -1.3}), {2, -1, 0.4}}};
+  MotionBlock motion_0 = MotionBlock::LinSpaced(-0.4, 0.5);
+  PoseBlock extrinsics_0 = toBlock(Pose{expRotation({0.02, 0.01, 1.55}), {-0.02, -0.06, 0.01}});
+  std::unique_ptr<PriorFactor> factor;
+
+  GaugeFreePrior() {
+    const auto pose = std::make_shared<PoseManifold>();
+    std::vector<PriorBlock> blocks{{pose, toBlock(poses_0[0]), GaugeAction::kPose},
+                                   {pose, toBlock(poses_0[1]), GaugeAction::kPose},
+                                   {std::make_shared<VectorManifold>(kMotionSize), motion_0, GaugeAction::kMotion},
+                                   {pose, extrinsics_0}};
+    constexpr int n = 3 * kPoseTangent + kMotionSize;
+    Eigen::MatrixXd A(8, n), G = Eigen::MatrixXd::Zero(n, 4);
+    for (int i = 0; i < 8; ++i)
+      for (int k = 0; k < n; ++k) A(i, k) = std::sin(1 + 3.7 * i + 1.3 * k * k);
+    for (int k = 0; k < 2; ++k) {
+      G.block<3, 3>(6 * k, 0).setIdentity();
+      G.block<3, 1>(6 * k, 3) = Eigen::Vector3d::UnitZ().cross(poses_0[k].p);
+      G.block<3, 1>(6 * k + 3, 3) = poses_0[k].q.conjugate() * Eigen::Vector3d::UnitZ();
+    }
+    G.block<3, 1>(12, 3) = Eigen::Vector3d::UnitZ().cross(velocityOf(motion_0.data()));
+    A -= A * G * (G.transpose() * G).inverse() * G.transpose();
+    factor = std::make_unique<PriorFactor>(std::move(blocks), A, Eigen::VectorXd::LinSpaced(8, -1, 1));
+  }
+};
+
+struct PriorState {
+  PoseBlock first, second, extrinsics;
+  MotionBlock motion;
+  std::vector<const double*> blocks() const { return {first.data(), second.data(), motion.data(), extrinsics.data()}; }
+};
+
+/// The linearisation point moved by much (the world) and by little (each block by itself).
+PriorState displaced(const GaugeFreePrior& prior, const Pose& world, double little) {
+  const auto moved = [&](const Pose& pose, double by) {
+    return toBlock(world * pose *
+                   Pose{expRotation(by * Eigen::Vector3d(0.3, -0.2, 0.5)), by * Eigen::Vector3d(1, 2, -1)});
+  };
+  PriorState state{moved(prior.poses_0[0], little), moved(prior.poses_0[1], -little), prior.extrinsics_0,
+                   prior.motion_0};
+  state.motion.segment<3>(kVelocityAt) = world.q * (velocityOf(prior.motion_0.data()) + Eigen::Vector3d(little, 0, 0));
+  state.motion[kBiasGyroAt] += little;
+  return state;
+}
+
+const Pose kOtherWorld{Eigen::Quaterniond(Eigen::AngleAxisd(2.1, Eigen::Vector3d::UnitZ())), {30, -20, 5}};
+
+TEST(PriorFactor, DoesNotChangeWhenTheWorldMoves) {
+  const GaugeFreePrior prior;
+  const PriorState here = displaced(prior, Pose{}, 0.05), there = displaced(prior, kOtherWorld, 0.05);
+  Eigen::VectorXd r_here(8), r_there(8), r_0(8);
+  ASSERT_TRUE(prior.factor->Evaluate(here.blocks().data(), r_here.data(), nullptr));
+  ASSERT_TRUE(prior.factor->Evaluate(there.blocks().data(), r_there.data(), nullptr));
+  EXPECT_LT((r_here - r_there).norm(), 1e-9);
+  const PriorState at_0 = displaced(prior, Pose{}, 0);
+  ASSERT_TRUE(prior.factor->Evaluate(at_0.blocks().data(), r_0.data(), nullptr));
+  EXPECT_GT((r_here - r_0).norm(), 0.01) << "it is not blind to the rest";
+}
+
+TEST(PriorFactor, GradientsInAnotherWorld) {
+  const GaugeFreePrior prior;
+  for (const double little : {0.0, 0.05, 0.4}) {
+    const PriorState state = displaced(prior, kOtherWorld, little);
+    expectGradients(*prior.factor, {&kPoseManifold, &kPoseManifold, nullptr, &kPoseManifold}, state.blocks(), 1e-5);
+  }
+}
+
+TEST(PriorFactor, PlainKnowledgeOfAPoseIsAbsolute) {
+  const auto prior =
+      makeBlockPrior(std::make_shared<PoseManifold>(), toBlock(Pose{}), Eigen::VectorXd::Constant(6, 0.1));
+  const PoseBlock moved = toBlock(Pose{Eigen::Quaterniond::Identity(), {1, 0, 0}});
+  const double* blocks[] = {moved.data()};
+  Eigen::VectorXd r(6);
+  ASSERT_TRUE(prior->Evaluate(blocks, r.data(), nullptr));
+  EXPECT_NEAR(r[0], 10, 1e-12);
+  EXPECT_LT(prior->anchor(), 0);
 }
 
 }  // namespace

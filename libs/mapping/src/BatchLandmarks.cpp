@@ -60,18 +60,16 @@ void BatchProblem::addPoints() {
 }
 
 void BatchProblem::addLines() {
-  const double focal = calibrated_.camera.meanFocal() / estimator_.factors.line_sigma_px;
   for (std::size_t i = 0; i < lines_.size(); ++i) {
     const LineRecord& line = material_.lines[lines_[i]];
     const Eigen::Vector3d origin_w = originOf(line.views.front().keyframe);
     for (const LineView* view : spreadViews(line.views, most_views_)) {
       const LineView& v = *view;
       const auto k = static_cast<std::size_t>(keyframe_places_[v.keyframe]);
-      const auto seen = [&](const Eigen::Vector2d& px) {
-        return makeObservation(calibrated_.camera, calibrated_.camera.normalise(px));
-      };
-      line_factors_.emplace_back(seen(v.start_px), seen(v.end_px), motionOf(material_.keyframes[k]), origin_w,
-                                 focal / std::max(0.1, static_cast<double>(v.sigma_px)));
+      const PinholeRadtan& camera = calibrated_.camera;
+      const auto [start, end] = makeLineEnds(camera, camera.normalise(v.start_px), camera.normalise(v.end_px));
+      line_factors_.emplace_back(start, end, motionOf(material_.keyframes[k]), origin_w,
+                                 estimator_.factors.line_sigma_px * std::max(0.1, static_cast<double>(v.sigma_px)));
       problem_->AddResidualBlock(&line_factors_.back(), &line_loss_, at(poseAt(k)), at(extrinsics_at_),
                                  at(correction_at_), at(lines_at_ + i * kLineSize));
     }

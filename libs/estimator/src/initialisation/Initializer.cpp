@@ -246,36 +246,17 @@ double Initializer::relativeScaleSigma(SlidingWindow& window) const {
   if (!prior) return std::numeric_limits<double>::infinity();
 
   // Information of everything that stays; the sigma of the distance to the frame farthest from the first.
-  std::vector<const double*> blocks;
-  std::vector<RowMajorMatrix> jacobians;
-  std::vector<double*> pointers;
-  Eigen::Index total = 0, place = -1;
   const WindowFrame* farthest = &window.frames.back();
   for (const WindowFrame& f : window.frames)
     if ((f.T_w_b().p - window.frames.front().T_w_b().p).norm() >
         (farthest->T_w_b().p - window.frames.front().T_w_b().p).norm())
       farthest = &f;
-  const int rows = prior->factor->num_residuals();
+  Eigen::Index total = 0, place = -1;
   for (const BlockKey& key : prior->blocks) {
-    const auto manifold = manifoldOf(key.kind);
-    blocks.push_back(window.block(key));
-    jacobians.emplace_back(rows, manifold->AmbientSize());
     if (key.kind == BlockKey::kPose && key.id == farthest->id) place = total;
-    total += manifold->TangentSize();
+    total += manifoldOf(key.kind)->TangentSize();
   }
-  for (RowMajorMatrix& J : jacobians) pointers.push_back(J.data());
-  Eigen::VectorXd r(rows);
-  prior->factor->Evaluate(blocks.data(), r.data(), pointers.data());
-  Eigen::MatrixXd J(rows, total);
-  Eigen::Index at = 0;
-  for (std::size_t i = 0; i < blocks.size(); ++i) {
-    const auto manifold = manifoldOf(prior->blocks[i].kind);
-    RowMajorMatrix plus(manifold->AmbientSize(), manifold->TangentSize());
-    manifold->PlusJacobian(blocks[i], plus.data());
-    J.middleCols(at, manifold->TangentSize()) = jacobians[i] * plus;
-    at += manifold->TangentSize();
-  }
-  Eigen::MatrixXd H = J.transpose() * J;
+  Eigen::MatrixXd H = prior->factor->information();
   H.diagonal().array() += 1e-9;
   const Eigen::Vector3d displacement = farthest->T_w_b().p - window.frames.front().T_w_b().p;
   const double distance = displacement.norm();

@@ -29,7 +29,7 @@ NormalEquations4 normalEquations(const SlidingWindow& window, const FactorParams
   LineManifold().PlusJacobian(line.data(), plus.data());
   for (const LineSighting& s : track.sightings) {
     const LineFactor factor(s.start, s.end, window.frame(s.frame).bodyMotion(), track.origin_w,
-                            window.camera().meanFocal() / (params.line_sigma_px * s.sigma_px));
+                            params.line_sigma_px * s.sigma_px);
     const double* blocks[] = {window.frame(s.frame).pose.data(), window.extrinsics.data(), window.correction.data(),
                               line.data()};
     Eigen::Vector2d r;
@@ -132,8 +132,7 @@ double lineError(const SlidingWindow& window, const LineTrack& track) {
   const int least_in_front = track.group != 0 ? 1 : 2;
   for (const LineSighting& s : track.sightings) {
     if (endsInCamera(window, track, s, ends) < least_in_front) return std::numeric_limits<double>::infinity();
-    const LineFactor factor(s.start, s.end, window.frame(s.frame).bodyMotion(), track.origin_w,
-                            window.camera().meanFocal());
+    const LineFactor factor(s.start, s.end, window.frame(s.frame).bodyMotion(), track.origin_w, 1);
     const double* blocks[] = {window.frame(s.frame).pose.data(), window.extrinsics.data(), window.correction.data(),
                               track.line.data()};
     Eigen::Vector2d r;

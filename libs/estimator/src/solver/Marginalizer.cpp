@@ -55,6 +55,19 @@ WindowPrior priorOf(std::vector<BlockKey> keys, std::vector<PriorBlock> blocks, 
   return prior;
 }
 
+GaugeAction actionOf(const BlockKey& key) {
+  if (key.kind == BlockKey::kPose) return GaugeAction::kPose;
+  return key.kind == BlockKey::kMotion ? GaugeAction::kMotion : GaugeAction::kNone;
+}
+
+/// Whether a factor knows where in the world a pose is.
+bool isAbsolute(const Factor& factor) {
+  const auto* prior = dynamic_cast<const PriorFactor*>(factor.cost);
+  return prior && prior->anchor() < 0 &&
+         std::any_of(factor.blocks.begin(), factor.blocks.end(),
+                     [](const BlockKey& key) { return key.kind == BlockKey::kPose; });
+}
+
 }  // namespace
 
 std::optional<WindowPrior> marginalise(SlidingWindow& window, const std::vector<Factor>& factors,
@@ -71,11 +84,12 @@ std::optional<WindowPrior> marginalise(SlidingWindow& window, const std::vector<
   const Eigen::Index start = eq.offsets[kept], size = eq.H.rows() - start;
   if (size == 0) return std::nullopt;
   eliminate(eq, 0, start);
+  const bool absolute = std::any_of(factors.begin(), factors.end(), isAbsolute);
   std::vector<PriorBlock> blocks;
   for (std::size_t i = kept; i < eq.blocks.size(); ++i) {
     const auto manifold = manifoldOf(eq.blocks[i].kind);
-    blocks.push_back(
-        {manifold, Eigen::Map<const Eigen::VectorXd>(window.block(eq.blocks[i]), manifold->AmbientSize())});
+    blocks.push_back({manifold, Eigen::Map<const Eigen::VectorXd>(window.block(eq.blocks[i]), manifold->AmbientSize()),
+                      absolute ? GaugeAction::kNone : actionOf(eq.blocks[i])});
   }
   return priorOf({eq.blocks.begin() + static_cast<std::ptrdiff_t>(kept), eq.blocks.end()}, std::move(blocks),
                  eq.H.bottomRightCorner(size, size), eq.b.tail(size));

@@ -131,24 +131,36 @@ double ReducedSystem::addOther(const Factor& factor) {
   return cost;
 }
 
-/// A prior's information does not change, only the tangent spaces turn: H = C' A'A C.
+/// A prior's information does not change, only the tangent spaces turn, and the alignment with its anchor moves:
+/// H = C' A'A C with C = blocks on the diagonal + G E in the anchor's columns.
 double ReducedSystem::addPrior(const Factor& factor, const PriorFactor& prior) {
   std::vector<const double*> blocks;
   for (const BlockKey& key : factor.blocks) blocks.push_back(window_.block(key));
-  const Eigen::VectorXd r = prior.constant() + prior.root() * prior.difference(blocks.data());
+  const PriorDifference difference = prior.difference(blocks.data(), true);
+  const Eigen::VectorXd r = prior.constant() + prior.root() * difference.value;
   Eigen::VectorXd gradient = prior.root().transpose() * r;
   Eigen::MatrixXd H = prior.information();
   const Placement to = placementOf(factor);
+  const Eigen::MatrixXd by_alignment = H * difference.by_alignment;  // n x 4, before the blocks turn
+  const Eigen::Matrix4d square = difference.by_alignment.transpose() * by_alignment;
+  const Eigen::Vector4d gradient_alignment = difference.by_alignment.transpose() * gradient;
+  Eigen::MatrixXd turned = by_alignment;
   for (std::size_t i = 0; i < blocks.size(); ++i) {
-    const PriorBlock& block = prior.blocks()[i];
-    if (isVectorSpace(*block.manifold)) continue;
-    RowMajorMatrix plus(block.manifold->AmbientSize(), block.manifold->TangentSize());
-    block.manifold->PlusJacobian(blocks[i], plus.data());
-    const Eigen::MatrixXd C =
-        block.manifold->differenceJacobian(blocks[i], block.linearisation.data()).lazyProduct(plus);
+    const Eigen::MatrixXd& C = difference.by_block[i];
+    if (C.size() == 0) continue;
     H.middleCols(to.from[i], C.cols()) = H.middleCols(to.from[i], C.cols()).lazyProduct(C).eval();
     H.middleRows(to.from[i], C.cols()) = C.transpose().lazyProduct(H.middleRows(to.from[i], C.cols())).eval();
+    turned.middleRows(to.from[i], C.cols()) = C.transpose().lazyProduct(turned.middleRows(to.from[i], C.cols())).eval();
     gradient.segment(to.from[i], C.cols()) = C.transpose().lazyProduct(gradient.segment(to.from[i], C.cols())).eval();
+  }
+  if (prior.anchor() >= 0) {
+    const Eigen::Index at = to.from[static_cast<std::size_t>(prior.anchor())];
+    const Eigen::MatrixXd cross = turned * difference.alignment_by_anchor;  // n x 6
+    H.middleCols<kPoseTangent>(at) += cross;
+    H.middleRows<kPoseTangent>(at) += cross.transpose();
+    H.block<kPoseTangent, kPoseTangent>(at, at) +=
+        difference.alignment_by_anchor.transpose() * square * difference.alignment_by_anchor;
+    gradient.segment<kPoseTangent>(at) += difference.alignment_by_anchor.transpose() * gradient_alignment;
   }
   addInformation(to, H, gradient);
   return 0.5 * r.squaredNorm();

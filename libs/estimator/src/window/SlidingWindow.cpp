@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "lintel/estimator/SlidingWindow.h"
 
-#include <Eigen/LU>
 #include <algorithm>
 #include <stdexcept>
 
@@ -52,8 +51,8 @@ void SlidingWindow::addFrame(WindowFrame frame, const FrameTracks& tracks) {
   for (const LineObservation& o : tracks.lines) {
     LineTrack& track = lines[o.id];
     track.id = o.id;
-    track.sightings.push_back({frame.id, makeObservation(camera_, o.start), makeObservation(camera_, o.end), o.start_px,
-                               o.end_px, o.sigma_px});
+    const auto [start, end] = makeLineEnds(camera_, o.start, o.end);
+    track.sightings.push_back({frame.id, start, end, o.start_px, o.end_px, o.sigma_px});
   }
   frames.push_back(std::move(frame));
 }
@@ -79,19 +78,6 @@ void SlidingWindow::removeFrame(FrameId id, bool keyframe) {
 Eigen::Vector3d SlidingWindow::positionOf(const PointTrack& track) const {
   constexpr double kLeast = 1e-6;  // of the homogeneous coordinate: a point farther away is at infinity
   return track.origin_w + track.point.head<3>() / std::max(track.point[3], kLeast);
-}
-
-NormalisedObservation makeObservation(const PinholeRadtan& camera, const Eigen::Vector2d& normalised) {
-  NormalisedObservation o;
-  o.position = normalised;
-  const Eigen::Vector2d distorted = camera.distort(normalised);
-  const double r2 = normalised.squaredNorm();
-  // distort(x) = (px - c) / f: both sides differentiated
-  Eigen::Matrix<double, 2, 6> d_distorted;
-  d_distorted << -distorted.x() / camera.fx, 0, -1 / camera.fx, 0, -normalised.x() * r2, -normalised.x() * r2 * r2, 0,
-      -distorted.y() / camera.fy, 0, -1 / camera.fy, -normalised.y() * r2, -normalised.y() * r2 * r2;
-  o.correction_jacobian.leftCols<6>() = camera.distortJacobian(normalised).inverse() * d_distorted;
-  return o;
 }
 
 }  // namespace lintel

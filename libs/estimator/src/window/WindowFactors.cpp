@@ -97,8 +97,7 @@ void WindowFactors::addLine(const LineTrack& track, const DegeneracyParams& dege
   }
   if (track.sightings.size() < 2) return;  // one sighting says nothing about the cameras
   for (const LineSighting& s : track.sightings) {
-    const double weight = window_.camera().meanFocal() / (params_.line_sigma_px * s.sigma_px);
-    line_factors_.emplace_back(s.start, s.end, motionOf(s.frame), track.origin_w, weight);
+    line_factors_.emplace_back(s.start, s.end, motionOf(s.frame), track.origin_w, params_.line_sigma_px * s.sigma_px);
     factors_.push_back({&line_factors_.back(),
                         &line_loss_,
                         {{BlockKey::kPose, s.frame},

@@ -42,20 +42,21 @@ std::set<BlockKey> leavingWith(const WindowFrame& frame, const std::vector<Facto
 /// shared directions stay out of priors: which lines share one is decided anew with every frame.
 bool outlastsTracks(const BlockKey& key) { return !isLandmark(key) && key.kind != BlockKey::kDirection; }
 
-/// The factors that become part of the prior: those that touch a block that leaves, if a prior may hold all others.
-std::vector<Factor> goingWith(const std::set<BlockKey>& leaving, const std::vector<Factor>& factors) {
+/// The factors that become part of the prior: those that touch a block that leaves, if a prior may hold all others. Not
+/// the sightings by the newest frame: a track that goes on starts anew with its newest sighting.
+std::vector<Factor> goingWith(const std::set<BlockKey>& leaving, FrameId newest, const std::vector<Factor>& factors) {
   std::vector<Factor> result;
   const auto leaves = [&](const BlockKey& key) { return leaving.count(key) > 0; };
   for (const Factor& factor : factors)
-    if (std::any_of(factor.blocks.begin(), factor.blocks.end(), leaves) &&
+    if (!(isImageFactor(factor) && factor.blocks.front().id == newest) &&
+        std::any_of(factor.blocks.begin(), factor.blocks.end(), leaves) &&
         std::all_of(factor.blocks.begin(), factor.blocks.end(),
                     [&](const BlockKey& key) { return outlastsTracks(key) || leaves(key); }))
       result.push_back(factor);
   return result;
 }
 
-/// Sightings that have been used: a track that goes on keeps only the newest, so that nothing counts twice. (The oldest
-/// goes with its frame.)
+/// Sightings that have been used: a track that goes on keeps only the newest. (The oldest goes with its frame.)
 template <class Tracks>
 void consumeSightings(Tracks& tracks, BlockKey::Kind kind, const std::set<BlockKey>& dropped, FrameId newest) {
   for (auto& [id, track] : tracks)
@@ -69,12 +70,12 @@ void consumeSightings(Tracks& tracks, BlockKey::Kind kind, const std::set<BlockK
 
 void marginaliseOldest(SlidingWindow& window, const std::vector<Factor>& measurements) {
   const std::set<BlockKey> leaving = leavingWith(window.frames.front(), measurements);
-  marginaliseWith(window, goingWith(leaving, measurements), takePriors(window, leaving), leaving);
+  const FrameId newest = window.frames.back().id;
+  marginaliseWith(window, goingWith(leaving, newest, measurements), takePriors(window, leaving), leaving);
   for (auto& [id, track] : window.lines)
     if (leaving.count({BlockKey::kLine, id}) && track.verdict == LineVerdict::kGood &&
         (!track.best || track.sigma_direction_rad < track.best->sigma_direction_rad))
       track.best = KnownLine{track.line, track.origin_w, track.sigma_direction_rad, track.sigma_distance_m};
-  const FrameId newest = window.frames.back().id;
   consumeSightings(window.points, BlockKey::kPoint, leaving, newest);
   consumeSightings(window.lines, BlockKey::kLine, leaving, newest);
 }

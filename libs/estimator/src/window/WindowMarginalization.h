@@ -13,7 +13,8 @@ namespace lintel {
 
 /// The oldest frame leaves with the points and lines that it sees. Those of the window's `measurements` that touch what
 /// leaves become a prior, with the priors on it; but not those that also touch a point or line that stays, or a shared
-/// direction. Leaves the frame itself in the window (removeFrame follows).
+/// direction, nor what the newest frame sees: the tracks that go on start anew with that. Leaves the frame itself in
+/// the window (removeFrame follows).
 void marginaliseOldest(SlidingWindow& window, const std::vector<Factor>& measurements);
 
 /// The same with the measurements that WindowFactors makes.

@@ -11,6 +11,7 @@
 #include "TestWindow.h"
 #include "landmarks/PointTriangulation.h"
 #include "lintel/factors/PriorFactors.h"
+#include "lintel/geometry/Rotation.h"
 #include "window/WindowFactors.h"
 #include "window/WindowMarginalization.h"
 
@@ -203,6 +204,37 @@ TEST(MarginalisedPrior, LeavesPositionAndYawFree) {
     ASSERT_NE(pose, eq.blocks.end());
     const Eigen::Index at = eq.offsets[static_cast<std::size_t>(pose - eq.blocks.begin())];
     EXPECT_GT(std::sqrt(eq.H(at, at) / eq.H.diagonal().maxCoeff()), 1e-4);
+  }
+}
+
+TEST(MarginalisedPrior, LeavesPositionAndYawFreeWhereverTheWindowHasMoved) {
+  TrackSimulationParams tracks;
+  tracks.duration_s = 3;
+  tracks.max_points_per_frame = 60;
+  const TrackedFlight flight = fly(perfectImu(), tracks);
+  SlidingWindow window = trueWindow(flight, 0, 10);
+  triangulatePoints(window, kParams.landmarks, 1);
+  for (int round = 0; round < 3; ++round) {
+    marginaliseOldest(window, kParams);
+    window.removeFrame(window.frames.front().id, true);
+    // the solver moves the window by centimetres and degrees, all of it and its frames among each other
+    const Eigen::Quaterniond yaw(Eigen::AngleAxisd(0.1, Eigen::Vector3d::UnitZ()));
+    for (WindowFrame& frame : window.frames) {
+      const Pose T_w_b = Pose{yaw, {0.2, -0.1, 0.05}} * frame.T_w_b();
+      const auto little = 0.003 * static_cast<double>(frame.id % 3);
+      frame.pose = toBlock(T_w_b * Pose{expRotation({little, -little, little}), {little, 0, -little}});
+      frame.motion.segment<3>(kVelocityAt) = yaw * velocityOf(frame.motion.data()) + Eigen::Vector3d(little, 0, 0);
+    }
+    const WindowPrior& prior = window.priors[0];
+    EXPECT_LT(resistance(window, prior, Eigen::Vector3d::UnitX(), 0), 1e-6) << round;
+    EXPECT_LT(resistance(window, prior, Eigen::Vector3d::UnitZ(), 0), 1e-6) << round;
+    EXPECT_LT(resistance(window, prior, Eigen::Vector3d::Zero(), 1), 1e-6) << round;
+    // and without the alignment it would not be
+    WindowPrior plain{prior.blocks, nullptr};
+    std::vector<PriorBlock> blocks = prior.factor->blocks();
+    for (PriorBlock& block : blocks) block.action = GaugeAction::kNone;
+    plain.factor = std::make_shared<PriorFactor>(blocks, prior.factor->root(), prior.factor->constant());
+    EXPECT_GT(resistance(window, plain, Eigen::Vector3d::Zero(), 1), 1e-5) << round;
   }
 }
 

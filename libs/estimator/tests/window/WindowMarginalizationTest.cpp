@@ -52,7 +52,8 @@ TEST(MarginaliseOldest, LeavesOnePriorOnTheStatesThatStay) {
   EXPECT_FALSE(touches(prior, BlockKey::kMotion, 0));
   EXPECT_TRUE(touches(prior, BlockKey::kPose, 1));
   EXPECT_TRUE(touches(prior, BlockKey::kMotion, 1)) << "by the IMU";
-  EXPECT_TRUE(touches(prior, BlockKey::kPose, 7)) << "by points seen from 0 to 7";
+  EXPECT_TRUE(touches(prior, BlockKey::kPose, 6)) << "by points seen from 0 to 6";
+  EXPECT_FALSE(touches(prior, BlockKey::kPose, 7)) << "what the newest frame sees is still to come";
   EXPECT_TRUE(touches(prior, BlockKey::kExtrinsics, 0));
   for (const BlockKey& key : prior.blocks) EXPECT_TRUE(key.kind != BlockKey::kPoint && key.kind != BlockKey::kLine);
   EXPECT_TRUE(window.contains(0)) << "removing the frame is the caller's";
@@ -79,6 +80,20 @@ TEST(MarginaliseOldest, NoSightingCountsTwice) {
   }
   EXPECT_GT(consumed, 5);
   EXPECT_GT(untouched, 5);
+}
+
+TEST(MarginaliseOldest, TheNewestFramesSightingsStayOutOfThePrior) {
+  // Wherever the newest frame is said to have seen the points: the prior is the same, and those sightings are still
+  // there for what comes.
+  SlidingWindow window = flownWindow(), other = window;
+  for (auto& [id, track] : other.points)
+    if (track.sightings.back().frame == 7) track.sightings.back().px += Eigen::Vector2d(0.5, -0.3);
+  marginaliseOldest(window, kParams);
+  marginaliseOldest(other, kParams);
+  const PriorFactor &prior = *window.priors.back().factor, &same = *other.priors.back().factor;
+  ASSERT_EQ(window.priors.back().blocks, other.priors.back().blocks);
+  EXPECT_EQ(prior.root(), same.root());
+  EXPECT_EQ(prior.constant(), same.constant());
 }
 
 TEST(MarginaliseOldest, ARestingFrameTakesItsVelocityAlong) {

@@ -12,7 +12,7 @@
 #include "lintel/core/FrameTracks.h"
 #include "lintel/core/Rig.h"
 #include "lintel/factors/FrameMotion.h"
-#include "lintel/factors/LineFactor.h"
+#include "lintel/factors/ImageObservations.h"
 #include "lintel/factors/PriorFactors.h"
 #include "lintel/factors/StateBlocks.h"
 #include "lintel/inertial/Preintegration.h"
@@ -54,7 +54,7 @@ struct PointSighting {
 
 struct LineSighting {
   FrameId frame = 0;
-  NormalisedObservation start, end;
+  LineEnd start, end;
   Eigen::Vector2d start_px = Eigen::Vector2d::Zero(), end_px = Eigen::Vector2d::Zero();
   double sigma_px = 1;
 };
@@ -154,8 +154,5 @@ class SlidingWindow {
  private:
   PinholeRadtan camera_;
 };
-
-/// How an observation depends on the camera correction (intrinsics, by the camera model).
-NormalisedObservation makeObservation(const PinholeRadtan& camera, const Eigen::Vector2d& normalised);
 
 }  // namespace lintel

@@ -2,38 +2,30 @@
 #pragma once
 
 #include "lintel/factors/ImageFactor.h"
+#include "lintel/factors/ImageObservations.h"
 
 namespace lintel {
 
-/// An image observation on the normalised plane and how it moves with the camera correction.
-struct NormalisedObservation {
-  Eigen::Vector2d position = Eigen::Vector2d::Zero();  ///< (x/z, y/z)
-  ObservationJacobian correction_jacobian = ObservationJacobian::Zero();
-
-  /// The observation under a correction, to first order.
-  Eigen::Vector2d corrected(const double* correction) const {
-    return position + correction_jacobian * Eigen::Map<const CorrectionBlock>(correction);
-  }
-};
-
-/// Distances of the two observed end points to the projected infinite line, on the normalised plane
-/// ([Lim2021] line residual, [Bartoli2005]):
+/// Distances of the two observed end points to the projected infinite line, in pixels ([Lim2021] line residual,
+/// [Bartoli2005]):
 ///
 ///   (n, d) = line block, moment about the constant world point `origin_w`
-///   l = n_c = R_c_w (n + (origin_w - p_w_c) x d),    r_k = weight x_k^T l / sqrt(l_1^2 + l_2^2),  k = start, end
+///   l = n_c = R_c_w (n + (origin_w - p_w_c) x d),    r_k = s_k / sigma_px x_k^T l / sqrt(l_1^2 + l_2^2),  k = start,
+///   end
 ///
-/// `weight` = focal / sigma_px. Blocks: pose (T_w_b), extrinsics (T_b_c), correction, line. A constant origin near the
-/// line keeps phi well conditioned far from the world's origin.
+/// with x_k on the normalised plane and s_k the pixels that a distance of 1 is there (LineEnd). Blocks: pose (T_w_b),
+/// extrinsics (T_b_c), correction, line. A constant origin near the line keeps phi well conditioned far from the
+/// world's origin.
 class LineFactor final : public ImageFactor<LineTarget> {
  public:
-  LineFactor(const NormalisedObservation& start, const NormalisedObservation& end, const FrameMotion& motion,
-             const Eigen::Vector3d& origin_w, double weight)
-      : ImageFactor(motion), start_(start), end_(end), origin_w_(origin_w), weight_(weight) {}
+  LineFactor(const LineEnd& start, const LineEnd& end, const FrameMotion& motion, const Eigen::Vector3d& origin_w,
+             double sigma_px)
+      : ImageFactor(motion), start_(start), end_(end), origin_w_(origin_w), weight_(1 / sigma_px) {}
   void linearise(const CameraView& view, const double* correction, const double* line, bool jacobians,
                  LineLinearisation& out) const override;
 
  private:
-  NormalisedObservation start_, end_;
+  LineEnd start_, end_;
   Eigen::Vector3d origin_w_;
   double weight_;
 };

@@ -7,17 +7,40 @@
 #include <vector>
 
 #include "lintel/factors/Manifolds.h"
+#include "lintel/factors/StateBlocks.h"
 
 namespace lintel {
+
+/// What a change of the world's position and yaw, which no measurement sees, does to a block.
+enum class GaugeAction {
+  kNone,    ///< calibration
+  kPose,    ///< p <- R p + t, R_w_b <- R R_w_b
+  kMotion,  ///< v <- R v
+};
 
 /// One block of a prior: what it was when the prior was made.
 struct PriorBlock {
   std::shared_ptr<const StateManifold> manifold;
   Eigen::VectorXd linearisation;  ///< ambient
+  GaugeAction action = GaugeAction::kNone;
 };
 
-/// r = A (x ⊟ x_0) + r_0 over any blocks: what marginalisation leaves, or plain knowledge about a state.
-/// The Jacobian is exact also away from x_0.
+/// x' ⊟ x_0 of all blocks of a prior, and its derivatives with respect to their tangents:
+/// d value = blockdiag(by_block) dx + by_alignment alignment_by_anchor dx_anchor.
+struct PriorDifference {
+  Eigen::VectorXd value;
+  std::vector<Eigen::MatrixXd> by_block;  ///< an empty one is the identity
+  Eigen::Matrix<double, Eigen::Dynamic, 4> by_alignment;
+  Eigen::Matrix<double, 4, kPoseTangent> alignment_by_anchor;
+};
+
+/// r = A (x' ⊟ x_0) + r_0 over any blocks: what marginalisation leaves, or plain knowledge about a state.
+///
+/// A prior over poses says nothing about the world's position and yaw, but linearised it says so at x_0 only: elsewhere
+/// A (x ⊟ x_0) changes when the world turns, and the estimate gains information about its yaw that nobody measured
+/// [Huang2009]. Therefore x' is x moved by the shift and the turn about the vertical that bring the first block with
+/// GaugeAction::kPose, the anchor, back to where x_0 has it: r does not change at all when the world moves. Without an
+/// anchor x' = x. Jacobians are exact also away from x_0.
 class PriorFactor final : public ceres::CostFunction {
  public:
   /// `A`: rows x sum of tangent sizes in the order of `blocks`; `r_0`: rows.
@@ -28,15 +51,16 @@ class PriorFactor final : public ceres::CostFunction {
   const Eigen::VectorXd& constant() const { return r_0_; }             ///< r_0
   const Eigen::MatrixXd& root() const { return A_; }                   ///< A
   const Eigen::MatrixXd& information() const { return information_; }  ///< A' A
+  int anchor() const { return anchor_; }                               ///< place among the blocks; negative: none
 
-  /// x ⊟ x_0 of all blocks.
-  Eigen::VectorXd difference(double const* const* parameters) const;
+  PriorDifference difference(double const* const* parameters, bool derivatives) const;
 
  private:
   std::vector<PriorBlock> blocks_;
   Eigen::MatrixXd A_;
   Eigen::VectorXd r_0_;
   Eigen::MatrixXd information_;
+  int anchor_ = -1;
 };
 
 /// Independent knowledge about one block: r_k = (x ⊟ x_0)_k / sigma_k; a sigma of infinity leaves a component free.

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "lintel/factors/ImageFactor.h"
-#include "lintel/factors/LineFactor.h"
+#include "lintel/factors/ImageObservations.h"
 
 namespace lintel {
 
