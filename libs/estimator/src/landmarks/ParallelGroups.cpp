@@ -50,17 +50,16 @@ bool isWitness(const LineTrack& track) {
   return track.triangulated && !track.degenerate() && track.sigma_direction_rad < kKnown_rad;
 }
 
-/// Whether a degenerate line may have this direction: its planes contain it, and its end points have never
-/// contradicted. Ends that may still do so are waited for.
-bool mayBeParallel(const SlidingWindow& window, const EstimatorParams& params, LineTrack& track,
+/// Whether a degenerate line may have this direction: its planes contain it, and its end points do not contradict. Ends
+/// that may still do so are waited for.
+bool mayBeParallel(const SlidingWindow& window, const EstimatorParams& params, const LineTrack& track,
                    const Eigen::Vector3d& d_w, double max_misfit) {
-  if (track.released || directionMisfit(window, params, track, d_w) > max_misfit) return false;
+  if (directionMisfit(window, params, track, d_w) > max_misfit) return false;
   const SeenEnds ends = triangulateEnds(window, track);
-  if (ends.verdict == EndsVerdict::kCorners) {
-    const double angle = angleBetween((ends.end_w - ends.start_w).normalized(), d_w);
-    track.released = angle > std::max(kContradiction_rad, kContradiction * ends.sigma_direction_rad);
-  }
-  return !track.released && (ends.verdict != EndsVerdict::kTooEarly || track.group != 0);
+  if (ends.verdict == EndsVerdict::kTooEarly) return track.group != 0;
+  if (ends.verdict == EndsVerdict::kNoCorners) return true;
+  const double angle = angleBetween((ends.end_w - ends.start_w).normalized(), d_w);
+  return angle <= std::max(kContradiction_rad, kContradiction * ends.sigma_direction_rad);
 }
 
 double medianDepth(const SlidingWindow& window) {

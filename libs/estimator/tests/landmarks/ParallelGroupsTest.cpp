@@ -90,6 +90,25 @@ TEST(ParallelGroups, EndsThatLookFixedAreWaitedForAndMayContradict) {
   EXPECT_EQ(window.lines[60].group, 0u);
 }
 
+TEST(ParallelGroups, ADirectionThatWasOnlyTriedDoesNotKeepALineFromItsOwn) {
+  // An edge across the view, in one plane with the motion along it and with the vertical, which is tried first: its
+  // ends contradict the vertical and agree with the rails beside it.
+  SlidingWindow window = windowAt({at(0, 0, 0), at(0.1, 0, 0), at(0.2, 0, 0), at(0.3, 0, 0), at(0.4, 0, 0)});
+  for (int i = 0; i < 5; ++i) {
+    const Eigen::Vector3d side(0, 0.8 * std::cos(1.3 * i), 3 + 0.5 * i);
+    seeEverywhere(window, static_cast<TrackId>(i + 1),
+                  {side - Eigen::Vector3d(20, 0, 0), side + Eigen::Vector3d(20, 0, 0)});
+  }
+  seeEverywhere(window, 60, {{-0.3, 0, 2}, {0.5, 0, 2}});
+  triangulateLines(window, kParams);
+  ASSERT_TRUE(window.lines[60].degenerate());
+  ASSERT_LT(directionMisfit(window, kParams, window.lines[60], Eigen::Vector3d::UnitZ()), 1);
+  groupParallelLines(window, kParams);
+  ASSERT_EQ(window.directions.size(), 1u);
+  EXPECT_GT(std::abs(window.directions.begin()->second.d_w.x()), 0.999);
+  EXPECT_NE(window.lines[60].group, 0u);
+}
+
 TEST(ParallelGroups, ADirectionThatNobodyNeedsIsForgotten) {
   SlidingWindow window = windowWithRails(6);
   groupParallelLines(window, kParams);

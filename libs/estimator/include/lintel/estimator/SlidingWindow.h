@@ -103,7 +103,6 @@ struct LineTrack {
   LineVerdict verdict = LineVerdict::kNone;
   std::uint64_t group = 0;     ///< direction it is tied to; 0: none
   bool distance_known = true;  ///< false: in a group, and only its direction is known
-  bool released = false;       ///< its end points contradicted the direction of a group: it joins none any more
   double sigma_direction_rad = 0, sigma_distance_m = 0;
   std::optional<KnownLine> best;  ///< when marginalisation used up its sightings, if it was good then
 
