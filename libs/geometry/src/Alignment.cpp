@@ -2,9 +2,10 @@
 #include "lintel/geometry/Alignment.h"
 
 #include <Eigen/Geometry>
-#include <cmath>
 #include <stdexcept>
 #include <utility>
+
+#include "lintel/geometry/SmallMatrices.h"
 
 namespace lintel {
 
@@ -31,22 +32,27 @@ Similarity alignYaw(const Eigen::Ref<const Eigen::Matrix3Xd>& from, const Eigen:
   return result;
 }
 
+/// [Umeyama1991, eq. 38 to 43].
 Similarity alignUmeyama(const Eigen::Ref<const Eigen::Matrix3Xd>& from, const Eigen::Ref<const Eigen::Matrix3Xd>& to,
                         bool with_scale) {
-  // A scale needs movement: below, the ratio of the spreads is rounding noise.
-  const double spread = (from.colwise() - from.rowwise().mean().eval()).norm();
-  const bool moves = spread > 1e-9 * (1 + from.norm());
-  const Eigen::Matrix4d M = Eigen::umeyama(from, to, with_scale && moves);
+  const Eigen::Vector3d from_mean = from.rowwise().mean(), to_mean = to.rowwise().mean();
+  const Eigen::Matrix3Xd f = from.colwise() - from_mean, t = to.colwise() - to_mean;
+  Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();
+  for (Eigen::Index i = 0; i < f.cols(); ++i) covariance += t.col(i) * f.col(i).transpose();
+  const SingularValues3 svd = singularValues(covariance / static_cast<double>(f.cols()));
+  const Eigen::Vector3d signs(1, 1, svd.U.determinant() * svd.V.determinant() < 0 ? -1 : 1);
   Similarity result;
-  if (with_scale && moves) result.scale = std::cbrt(M.topLeftCorner<3, 3>().determinant());
+  // A scale needs movement: below, the ratio of the spreads is rounding noise.
+  if (with_scale && f.norm() > 1e-9 * (1 + from.norm()))
+    result.scale = svd.values.dot(signs) / (f.squaredNorm() / static_cast<double>(f.cols()));
   if (!(result.scale > 0)) {  // the partners do not move: the scale is zero
     result.scale = 0;
-    result.T_a_b.p = to.rowwise().mean();
+    result.T_a_b.p = to_mean;
     return result;
   }
-  Eigen::Matrix4d T = M;
-  T.topLeftCorner<3, 3>() /= result.scale;
-  result.T_a_b = poseFromMatrix(T);
+  const Eigen::Matrix3d R_a_b = svd.U * signs.asDiagonal() * svd.V.transpose();
+  result.T_a_b.q = Eigen::Quaterniond(R_a_b).normalized();
+  result.T_a_b.p = to_mean - result.scale * (R_a_b * from_mean);
   return result;
 }
 

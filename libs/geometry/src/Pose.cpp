@@ -1,16 +1,16 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "lintel/geometry/Pose.h"
 
-#include <Eigen/SVD>
+#include "lintel/geometry/SmallMatrices.h"
 
 namespace lintel {
 
 Pose poseFromMatrix(const Eigen::Matrix4d& T_a_b) {
   const Eigen::Matrix3d R = T_a_b.topLeftCorner<3, 3>();
-  const Eigen::JacobiSVD<Eigen::Matrix3d> svd(R, Eigen::ComputeFullU | Eigen::ComputeFullV);
-  Eigen::Matrix3d U = svd.matrixU();
-  if ((U * svd.matrixV().transpose()).determinant() < 0) U.col(2) *= -1;
-  const Eigen::Matrix3d R_orthonormal = U * svd.matrixV().transpose();
+  const SingularValues3 svd = singularValues(R);
+  Eigen::Matrix3d U = svd.U;
+  if ((U * svd.V.transpose()).determinant() < 0) U.col(2) *= -1;
+  const Eigen::Matrix3d R_orthonormal = U * svd.V.transpose();
   return {Eigen::Quaterniond(R_orthonormal).normalized(), T_a_b.topRightCorner<3, 1>()};
 }
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "lintel/geometry/Rotation.h"
 
+#include <algorithm>
 #include <cmath>
 
 namespace lintel {
@@ -49,8 +50,23 @@ Eigen::Matrix3d rightJacobianInverse(const Eigen::Vector3d& phi) {
   return Eigen::Matrix3d::Identity() + 0.5 * S + c * S * S;
 }
 
+/// As Eigen::Quaterniond::FromTwoVectors, whose singular value decomposition for opposite directions takes seconds of
+/// compile time.
 Eigen::Quaterniond rotationBetween(const Eigen::Vector3d& from, const Eigen::Vector3d& to) {
-  return Eigen::Quaterniond::FromTwoVectors(from, to).normalized();
+  const Eigen::Vector3d a = from.normalized(), b = to.normalized(), axis = a.cross(b);
+  const double cosine = b.dot(a);
+  Eigen::Quaterniond q;
+  if (cosine < -1 + 1e-12) {
+    const double w2 = 0.5 * (1 + std::max(cosine, -1.0)), sine = axis.norm();
+    q.vec() =
+        (sine > 1e-9 ? Eigen::Vector3d(axis / sine) : Eigen::Vector3d(tangentBasis(a).col(0))) * std::sqrt(1 - w2);
+    q.w() = std::sqrt(w2);
+  } else {
+    const double s = std::sqrt((1 + cosine) * 2);
+    q.vec() = axis * (1 / s);
+    q.w() = s * 0.5;
+  }
+  return q.normalized();
 }
 
 double yawOf(const Eigen::Quaterniond& R_w_b) { return 2.0 * std::atan2(R_w_b.z(), R_w_b.w()); }

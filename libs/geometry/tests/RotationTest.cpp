@@ -68,6 +68,10 @@ TEST(Rotation, BetweenDirections) {
   EXPECT_TRUE((rotationBetween({2, 0, 0}, {0, 5, 0}) * Vector3d::UnitX()).isApprox(Vector3d::UnitY(), 1e-15));
   EXPECT_TRUE((rotationBetween({2, 0, 0}, {0, 5, 0}) * Vector3d::UnitZ()).isApprox(Vector3d::UnitZ(), 1e-15));
   EXPECT_TRUE((rotationBetween({1, 0, 0}, {-1, 0, 0}) * Vector3d::UnitX()).isApprox(-Vector3d::UnitX(), 1e-15));
+  for (const double off : {1e-12, 1e-8, 1e-5}) {
+    const Vector3d nearly_opposite = Vector3d(-1, off, 0).normalized();
+    EXPECT_TRUE((rotationBetween({1, 0, 0}, nearly_opposite) * Vector3d::UnitX()).isApprox(nearly_opposite, 1e-9));
+  }
 }
 
 TEST(Rotation, YawIsWhatATurnAboutTheVerticalAdds) {

@@ -59,5 +59,15 @@ TEST(SmallMatrices, RootOfTheInverse) {
   EXPECT_FALSE(inverseRootLlt<3>(-A3).has_value());
 }
 
+TEST(SmallMatrices, SingularValuesDescendAndGiveTheMatrixBack) {
+  const Eigen::Matrix3d A = (Eigen::Matrix3d() << 1, 2, -3, 0, 4, 1, 2, 2, 2).finished();
+  const SingularValues3 svd = singularValues(A);
+  EXPECT_LT((svd.U * svd.values.asDiagonal() * svd.V.transpose() - A).norm(), 1e-14 * A.norm());
+  EXPECT_TRUE((svd.U.transpose() * svd.U).isIdentity(1e-14));
+  EXPECT_TRUE((svd.V.transpose() * svd.V).isIdentity(1e-14));
+  EXPECT_GE(svd.values[0], svd.values[1]);
+  EXPECT_GE(svd.values[1], svd.values[2]);
+}
+
 }  // namespace
 }  // namespace lintel

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// Decompositions of symmetric matrices: Eigen's, to the last bit. Eigen's templates take seconds of compile time for
+/// Decompositions of small matrices: Eigen's, to the last bit. Eigen's templates take seconds of compile time for
 /// each size in each file that uses them; here they are compiled once. Other sizes do not link.
 #pragma once
 
@@ -28,5 +28,12 @@ Eigen::Matrix<double, N, 1> solveLdlt(const Eigen::Matrix<double, N, N>& A, cons
 /// N is 3 or 4.
 template <int N>
 std::optional<Eigen::Matrix<double, N, N>> inverseRootLlt(const Eigen::Matrix<double, N, N>& A);
+
+/// A = U diag(values) V^T, values descending; as by Eigen::JacobiSVD.
+struct SingularValues3 {
+  Eigen::Matrix3d U, V;
+  Eigen::Vector3d values;
+};
+SingularValues3 singularValues(const Eigen::Matrix3d& A);
 
 }  // namespace lintel
