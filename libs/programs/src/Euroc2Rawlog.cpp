@@ -1,14 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "lintel/programs/Euroc2Rawlog.h"
 
-#include <CLI/App.hpp>
-#include <CLI/Config.hpp>
-#include <CLI/Formatter.hpp>
 #include <cstdio>
 #include <filesystem>
 #include <ostream>
 #include <string>
 
+#include "CommandLine.h"
 #include "ProgramMain.h"
 #include "lintel/reporting/Progress.h"
 #include "lintel/sensing/EurocToRawlog.h"
@@ -16,14 +14,14 @@
 namespace lintel {
 namespace {
 
-constexpr const char* kName = "euroc2rawlog";
-
 class Euroc2Rawlog {
  public:
+  static constexpr const char* kName = "euroc2rawlog";
+
   Euroc2Rawlog(std::ostream& out, std::ostream& err) : out_(out), err_(err) { addOptions(); }
 
   int run(int argc, const char* const* argv) {
-    if (const auto exit_code = parseArguments(app_, argc, argv, out_, err_)) return *exit_code;
+    if (const auto exit_code = line_.parse(argc, argv, out_, err_)) return *exit_code;
     if (std::filesystem::path(output_).extension() != ".rawlog")
       throw UsageError("-o must name a file ending in .rawlog");
     const EurocToRawlogSummary summary = convert();
@@ -34,18 +32,18 @@ class Euroc2Rawlog {
 
  private:
   void addOptions() {
-    app_.add_option("-i,--input", input_, "EuRoC folder: .../mav0 or its parent")->required()->type_name("FOLDER");
-    app_.add_option("-o,--output", output_, "Rawlog to write")->required()->type_name("FILE.rawlog");
-    app_.add_flag("-w,--overwrite", params_.overwrite, "Replace an existing rawlog and its image folder");
-    app_.add_flag("-q,--quiet", quiet_, "Print warnings and errors only");
-    app_.add_option("-z,--compress-level", params_.compress_level, "gzip level of the rawlog, 0 = not compressed")
-        ->check(CLI::Range(0, 9))
-        ->capture_default_str();
-    auto* embed = app_.add_flag("--embed", params_.embed, "Put the images into the rawlog instead of FILE_Images/");
-    app_.add_flag("--copy", params_.copy, "Copy the images into FILE_Images/ instead of linking them")->excludes(embed);
-    app_.add_option("--cameras", params_.cameras, "Cameras to write, e.g. cam0,cam1; all by default")
-        ->delimiter(',')
-        ->type_name("CAMERAS");
+    line_.option("-i,--input", input_, "EuRoC folder: .../mav0 or its parent").required().type("FOLDER");
+    line_.option("-o,--output", output_, "Rawlog to write").required().type("FILE.rawlog");
+    line_.flag("-w,--overwrite", params_.overwrite, "Replace an existing rawlog and its image folder");
+    line_.flag("-q,--quiet", quiet_, "Print warnings and errors only");
+    line_.option("-z,--compress-level", params_.compress_level, "gzip level of the rawlog, 0 = not compressed")
+        .range(0, 9)
+        .showDefault();
+    const auto embed = line_.flag("--embed", params_.embed, "Put the images into the rawlog instead of FILE_Images/");
+    line_.flag("--copy", params_.copy, "Copy the images into FILE_Images/ instead of linking them").excludes(embed);
+    line_.option("--cameras", params_.cameras, "Cameras to write, e.g. cam0,cam1; all by default")
+        .separatedBy(',')
+        .type("CAMERAS");
   }
 
   EurocToRawlogSummary convert() {
@@ -68,7 +66,7 @@ class Euroc2Rawlog {
 
   std::ostream& out_;
   std::ostream& err_;
-  CLI::App app_{"Writes an EuRoC recording as an MRPT rawlog.", kName};
+  CommandLine line_{kName, "Writes an EuRoC recording as an MRPT rawlog."};
   std::string input_, output_;
   EurocToRawlogParams params_;
   bool quiet_ = false;
@@ -77,7 +75,7 @@ class Euroc2Rawlog {
 }  // namespace
 
 int runEuroc2Rawlog(int argc, const char* const* argv, std::ostream& out, std::ostream& err) {
-  return programMain(kName, err, [&] { return Euroc2Rawlog(out, err).run(argc, argv); });
+  return programMain(Euroc2Rawlog::kName, err, [&] { return Euroc2Rawlog(out, err).run(argc, argv); });
 }
 
 }  // namespace lintel

@@ -1,9 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "lintel/programs/LintelBench.h"
 
-#include <CLI/App.hpp>
-#include <CLI/Config.hpp>
-#include <CLI/Formatter.hpp>
 #include <algorithm>
 #include <atomic>
 #include <chrono>
@@ -14,6 +11,7 @@
 #include <ostream>
 #include <thread>
 
+#include "CommandLine.h"
 #include "ProgramMain.h"
 #include "lintel/bench/BenchPage.h"
 #include "lintel/bench/BenchRunner.h"
@@ -27,16 +25,6 @@ namespace lintel {
 namespace {
 
 namespace fs = std::filesystem;
-
-constexpr const char* kName = "lintel-bench";
-
-std::string examples() {
-  return "Examples:\n"
-         "  lintel-bench euroc.yaml -o out --recordings EuRoC     runs what is missing, then writes the tables\n"
-         "  lintel-bench euroc.yaml -o out --recordings EuRoC --print-jobs | parallel\n"
-         "  lintel-bench euroc.yaml -o out --recordings EuRoC --collect      the tables of what is there\n"
-         "Tables: OUT/tables/*.txt and *.csv, OUT/results.json, OUT/report.html";
-}
 
 /// Several workers take jobs from one list; one thread at a time reports.
 class JobPool {
@@ -69,13 +57,15 @@ class JobPool {
 
 class LintelBench {
  public:
+  static constexpr const char* kName = "lintel-bench";
+
   LintelBench(std::ostream& out, std::ostream& err) : out_(out), err_(err) {
     workers_ = static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
     addOptions();
   }
 
   int run(int argc, const char* const* argv) {
-    if (const auto exit_code = parseArguments(app_, argc, argv, out_, err_)) return *exit_code;
+    if (const auto exit_code = line_.parse(argc, argv, out_, err_)) return *exit_code;
     checkUsage();
     out_folder_ = fs::absolute(output_ + "/.").lexically_normal().parent_path();
     suite_ = readSuite(suite_file_, recordings_);
@@ -90,28 +80,32 @@ class LintelBench {
   }
 
  private:
+  static std::string examples() {
+    return "Examples:\n"
+           "  lintel-bench euroc.yaml -o out --recordings EuRoC     runs what is missing, then writes the tables\n"
+           "  lintel-bench euroc.yaml -o out --recordings EuRoC --print-jobs | parallel\n"
+           "  lintel-bench euroc.yaml -o out --recordings EuRoC --collect      the tables of what is there\n"
+           "Tables: OUT/tables/*.txt and *.csv, OUT/results.json, OUT/report.html";
+  }
+
   void addOptions() {
-    app_.footer(examples());
-    app_.add_option("suite", suite_file_, "What to run: recordings and configurations")
-        ->type_name("SUITE.yaml")
-        ->required();
-    app_.add_option("-o,--output", output_, "Folder of results; what is there is not run again")
-        ->type_name("OUT")
-        ->required();
-    app_.add_option("--recordings", recordings_, "Folder in which recordings are looked for by name")
-        ->type_name("DIR")
-        ->capture_default_str();
-    app_.add_option("-j,--jobs", workers_, "Runs at the same time")->check(CLI::PositiveNumber)->capture_default_str();
-    app_.add_option("--threads", vio_threads_, "Threads of each run; results do not depend on it")
-        ->check(CLI::IsMember({1, 2}))
-        ->capture_default_str();
-    app_.add_flag("--print-jobs", print_jobs_, "Print what is missing, a shell command a run, and stop");
-    app_.add_flag("--collect", collect_, "Run nothing; make the tables of what is there");
-    app_.add_option("--job", job_, "Run only this one (as --print-jobs prints them)")->type_name("ID");
-    app_.add_flag("--retry-failed", retry_failed_, "Run again what failed");
-    app_.add_option("--programs", programs_, "Folder of lintel-vio and the others; without it that of this program")
-        ->type_name("DIR");
-    app_.add_flag("-q,--quiet", quiet_, "No progress, no tables on the terminal");
+    line_.footer(examples());
+    line_.option("suite", suite_file_, "What to run: recordings and configurations").type("SUITE.yaml").required();
+    line_.option("-o,--output", output_, "Folder of results; what is there is not run again").type("OUT").required();
+    line_.option("--recordings", recordings_, "Folder in which recordings are looked for by name")
+        .type("DIR")
+        .showDefault();
+    line_.option("-j,--jobs", workers_, "Runs at the same time").positive().showDefault();
+    line_.option("--threads", vio_threads_, "Threads of each run; results do not depend on it")
+        .oneOf({"1", "2"})
+        .showDefault();
+    line_.flag("--print-jobs", print_jobs_, "Print what is missing, a shell command a run, and stop");
+    line_.flag("--collect", collect_, "Run nothing; make the tables of what is there");
+    line_.option("--job", job_, "Run only this one (as --print-jobs prints them)").type("ID");
+    line_.flag("--retry-failed", retry_failed_, "Run again what failed");
+    line_.option("--programs", programs_, "Folder of lintel-vio and the others; without it that of this program")
+        .type("DIR");
+    line_.flag("-q,--quiet", quiet_, "No progress, no tables on the terminal");
   }
 
   void checkUsage() {
@@ -208,7 +202,7 @@ class LintelBench {
 
   std::ostream& out_;
   std::ostream& err_;
-  CLI::App app_{"Recordings × configurations: tables of accuracy, tracking, maps and timing.", kName};
+  CommandLine line_{kName, "Recordings × configurations: tables of accuracy, tracking, maps and timing."};
   std::string suite_file_, output_, recordings_ = ".", job_, programs_;
   int workers_ = 1, vio_threads_ = 1;
   bool print_jobs_ = false, collect_ = false, retry_failed_ = false, quiet_ = false;
@@ -220,7 +214,7 @@ class LintelBench {
 }  // namespace
 
 int runLintelBench(int argc, const char* const* argv, std::ostream& out, std::ostream& err) {
-  return programMain(kName, err, [&] { return LintelBench(out, err).run(argc, argv); });
+  return programMain(LintelBench::kName, err, [&] { return LintelBench(out, err).run(argc, argv); });
 }
 
 }  // namespace lintel

@@ -1,15 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "lintel/programs/LintelEval.h"
 
-#include <CLI/App.hpp>
-#include <CLI/Config.hpp>
-#include <CLI/Formatter.hpp>
 #include <filesystem>
 #include <memory>
 #include <optional>
 #include <ostream>
 #include <string>
 
+#include "CommandLine.h"
 #include "ProgramMain.h"
 #include "lintel/core/AtomicFile.h"
 #include "lintel/evaluation/LineErrors.h"
@@ -23,8 +21,6 @@
 namespace lintel {
 
 namespace {
-
-constexpr const char* kName = "lintel-eval";
 
 /// The map's own trajectory; without one, its keyframes.
 StampedPoses trajectoryOf(const LineMap& map) {
@@ -57,10 +53,12 @@ std::optional<std::int64_t> nanosecondsOf(const std::string& text) {
 
 class LintelEval {
  public:
+  static constexpr const char* kName = "lintel-eval";
+
   LintelEval(std::ostream& out, std::ostream& err) : out_(out), err_(err) { addOptions(); }
 
   int run(int argc, const char* const* argv) {
-    if (const auto exit_code = parseArguments(app_, argc, argv, out_, err_)) return *exit_code;
+    if (const auto exit_code = line_.parse(argc, argv, out_, err_)) return *exit_code;
     checkUsage();
     params_.alignment = alignmentKindOf(alignment_);
     if (!trajectory_.empty()) evaluateTrajectoryFile();
@@ -73,35 +71,36 @@ class LintelEval {
 
  private:
   void addOptions() {
-    app_.add_option("--trajectory", trajectory_, "Estimated trajectory, TUM or EuRoC state CSV")->type_name("EST");
-    app_.add_option(
-            "--groundtruth", groundtruth_,
-            "True trajectory: TUM, EuRoC state CSV, or a recording that carries it (EuRoC folder, rawlog); for a "
-            "map the default is the one beside the lines "
-            "(../state_groundtruth_estimate0/data.csv)")
-        ->type_name("GT");
-    app_.add_option("--map", map_, "Line map of lintel-vio")->type_name("MAP.lintel");
-    app_.add_option("--lines", lines_, "True lines, as in mav0/lines0/data.csv")->type_name("GT.csv");
-    app_.add_option("--align", alignment_, "How the estimate is laid onto the truth: se3, yaw, sim3 or none")
-        ->check(CLI::IsMember({"se3", "yaw", "sim3", "none"}))
-        ->capture_default_str();
-    app_.add_option("--max-difference", params_.max_difference_s,
-                    "A pose and its true partner: at most so far apart [s]")
-        ->check(CLI::NonNegativeNumber)
-        ->capture_default_str();
-    app_.add_option("--distances", params_.distances_m, "Stretches of the path for relative errors [m]")
-        ->check(CLI::PositiveNumber)
-        ->delimiter(',')
-        ->capture_default_str();
-    app_.add_option("--between", between_,
-                    "Only this part of the ground truth counts, two times [s] with a comma: for runs of a part")
-        ->type_name("T0,T1");
-    app_.add_option("--surfaces", surfaces_,
-                    "True surfaces, a PLY mesh; the default is the one beside the lines (../scene0/scene.ply)")
-        ->type_name("MESH.ply");
-    app_.add_option("--report", report_, "Write the figures with plots as one page")->type_name("FILE.html");
-    app_.add_option("--json", json_, "Write the figures to this file")->type_name("FILE");
-    app_.add_flag("--quiet", quiet_, "Print no figures");
+    line_.option("--trajectory", trajectory_, "Estimated trajectory, TUM or EuRoC state CSV").type("EST");
+    line_
+        .option("--groundtruth", groundtruth_,
+                "True trajectory: TUM, EuRoC state CSV, or a recording that carries it (EuRoC folder, rawlog); for a "
+                "map the default is the one beside the lines "
+                "(../state_groundtruth_estimate0/data.csv)")
+        .type("GT");
+    line_.option("--map", map_, "Line map of lintel-vio").type("MAP.lintel");
+    line_.option("--lines", lines_, "True lines, as in mav0/lines0/data.csv").type("GT.csv");
+    line_.option("--align", alignment_, "How the estimate is laid onto the truth: se3, yaw, sim3 or none")
+        .oneOf({"se3", "yaw", "sim3", "none"})
+        .showDefault();
+    line_.option("--max-difference", params_.max_difference_s, "A pose and its true partner: at most so far apart [s]")
+        .notNegative()
+        .showDefault();
+    line_.option("--distances", params_.distances_m, "Stretches of the path for relative errors [m]")
+        .positive()
+        .separatedBy(',')
+        .showDefault();
+    line_
+        .option("--between", between_,
+                "Only this part of the ground truth counts, two times [s] with a comma: for runs of a part")
+        .type("T0,T1");
+    line_
+        .option("--surfaces", surfaces_,
+                "True surfaces, a PLY mesh; the default is the one beside the lines (../scene0/scene.ply)")
+        .type("MESH.ply");
+    line_.option("--report", report_, "Write the figures with plots as one page").type("FILE.html");
+    line_.option("--json", json_, "Write the figures to this file").type("FILE");
+    line_.flag("--quiet", quiet_, "Print no figures");
   }
 
   void checkUsage() {
@@ -177,7 +176,8 @@ class LintelEval {
 
   std::ostream& out_;
   std::ostream& err_;
-  CLI::App app_{"Errors of a trajectory against its ground truth, and of a line map against the true lines.", kName};
+  CommandLine line_{kName,
+                    "Errors of a trajectory against its ground truth, and of a line map against the true lines."};
   std::string trajectory_, groundtruth_, map_, lines_, alignment_ = "se3", json_, report_, surfaces_, between_;
   bool quiet_ = false;
   TrajectoryErrorParams params_;
@@ -187,7 +187,7 @@ class LintelEval {
 }  // namespace
 
 int runLintelEval(int argc, const char* const* argv, std::ostream& out, std::ostream& err) {
-  return programMain(kName, err, [&] { return LintelEval(out, err).run(argc, argv); });
+  return programMain(LintelEval::kName, err, [&] { return LintelEval(out, err).run(argc, argv); });
 }
 
 }  // namespace lintel

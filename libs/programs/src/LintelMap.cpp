@@ -1,9 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "lintel/programs/LintelMap.h"
 
-#include <CLI/App.hpp>
-#include <CLI/Config.hpp>
-#include <CLI/Formatter.hpp>
 #include <algorithm>
 #include <filesystem>
 #include <map>
@@ -11,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "CommandLine.h"
 #include "ProgramMain.h"
 #include "lintel/exporting/MapExport.h"
 #include "lintel/mapping/MapFile.h"
@@ -18,8 +16,6 @@
 namespace lintel {
 
 namespace {
-
-constexpr const char* kName = "lintel-map";
 
 const std::map<std::string, LineStyle> kStyles{{"lines", LineStyle::kLines}, {"tubes", LineStyle::kTubes}};
 const std::map<std::string, LineColour> kColours{{"kind", LineColour::kKind},
@@ -32,19 +28,10 @@ const std::map<std::string, MapLayer> kLayers{{"lines", MapLayer::kLines},
                                               {"trajectory", MapLayer::kTrajectory}};
 
 template <class Value>
-CLI::Validator oneOf(const std::map<std::string, Value>& names) {
-  std::vector<std::string> list;
-  for (const auto& entry : names) list.push_back(entry.first);
-  return CLI::IsMember(list);
-}
-
-std::string examples() {
-  return "Examples:\n"
-         "  lintel-map map.lintel -o map.glb                       for f3d, Blender, browsers\n"
-         "  lintel-map map.lintel -o map.ply                       tubes, as MeshLab shows no lines\n"
-         "  lintel-map map.lintel -o map.png --colour height       a picture: above, first camera, side\n"
-         "  lintel-map map.lintel -o map.csv --min-observations 5  a table of the well-seen lines\n"
-         "  lintel-map map.lintel -o map.obj --layers lines,trajectory --radius 0.01";
+std::vector<std::string> namesOf(const std::map<std::string, Value>& values) {
+  std::vector<std::string> names;
+  for (const auto& entry : values) names.push_back(entry.first);
+  return names;
 }
 
 std::string extensionOf(const std::string& path) {
@@ -54,10 +41,12 @@ std::string extensionOf(const std::string& path) {
 
 class LintelMap {
  public:
+  static constexpr const char* kName = "lintel-map";
+
   LintelMap(std::ostream& out, std::ostream& err) : out_(out), err_(err) { addOptions(); }
 
   int run(int argc, const char* const* argv) {
-    if (const auto exit_code = parseArguments(app_, argc, argv, out_, err_)) return *exit_code;
+    if (const auto exit_code = line_.parse(argc, argv, out_, err_)) return *exit_code;
     for (const std::string& output : outputs_) {
       if (!viewerHint(extensionOf(output)).empty()) continue;
       throw UsageError("no form of export has the extension of " + output + "; take one of " + formats());
@@ -75,36 +64,43 @@ class LintelMap {
     return list;
   }
 
+  static std::string examples() {
+    return "Examples:\n"
+           "  lintel-map map.lintel -o map.glb                       for f3d, Blender, browsers\n"
+           "  lintel-map map.lintel -o map.ply                       tubes, as MeshLab shows no lines\n"
+           "  lintel-map map.lintel -o map.png --colour height       a picture: above, first camera, side\n"
+           "  lintel-map map.lintel -o map.csv --min-observations 5  a table of the well-seen lines\n"
+           "  lintel-map map.lintel -o map.obj --layers lines,trajectory --radius 0.01";
+  }
+
   void addOptions() {
-    app_.footer(examples());
-    app_.add_option("map", input_, "The native map file, as lintel-vio writes it")->required()->type_name("MAP.lintel");
-    app_.add_option("-o,--output", outputs_,
-                    "File to write (several -o give several); its extension chooses the form: " + formats())
-        ->required()
-        ->type_name("FILE.EXT")
-        ->take_all()
-        ->allow_extra_args(false);
-    app_.add_option("--as", style_, "Draw lines as strokes or as tubes; default by the form: tubes for obj and ply")
-        ->check(oneOf(kStyles));
-    app_.add_option("--radius", params_.radius_m, "Radius of tubes [m]; default by the map's extent")
-        ->check(CLI::PositiveNumber);
-    app_.add_option("--colour,--color", colour_, "What a line's colour says")
-        ->check(oneOf(kColours))
-        ->capture_default_str();
-    app_.add_option("--min-observations", params_.min_observations,
-                    "Leave out lines and points seen in fewer keyframes")
-        ->check(CLI::NonNegativeNumber);
-    app_.add_option("--min-length", params_.min_length_m, "Leave out shorter lines [m]")->check(CLI::NonNegativeNumber);
-    app_.add_option("--max-sigma", params_.max_sigma_m,
-                    "Leave out lines and points with a greater standard deviation of position [m]")
-        ->check(CLI::NonNegativeNumber);
-    app_.add_option("--layers", layers_,
-                    "What to show, with commas between: lines,points,keyframes,trajectory; default by the form")
-        ->delimiter(',')
-        ->allow_extra_args(false)
-        ->check(oneOf(kLayers))
-        ->type_name("LAYERS");
-    app_.add_flag("--quiet,-q", quiet_, "Print nothing");
+    line_.footer(examples());
+    line_.option("map", input_, "The native map file, as lintel-vio writes it").required().type("MAP.lintel");
+    line_
+        .option("-o,--output", outputs_,
+                "File to write (several -o give several); its extension chooses the form: " + formats())
+        .required()
+        .type("FILE.EXT")
+        .repeatable();
+    line_.option("--as", style_, "Draw lines as strokes or as tubes; default by the form: tubes for obj and ply")
+        .oneOf(namesOf(kStyles));
+    line_.option("--radius", params_.radius_m, "Radius of tubes [m]; default by the map's extent").positive();
+    line_.option("--colour,--color", colour_, "What a line's colour says").oneOf(namesOf(kColours)).showDefault();
+    line_.option("--min-observations", params_.min_observations, "Leave out lines and points seen in fewer keyframes")
+        .notNegative();
+    line_.option("--min-length", params_.min_length_m, "Leave out shorter lines [m]").notNegative();
+    line_
+        .option("--max-sigma", params_.max_sigma_m,
+                "Leave out lines and points with a greater standard deviation of position [m]")
+        .notNegative();
+    line_
+        .option("--layers", layers_,
+                "What to show, with commas between: lines,points,keyframes,trajectory; default by the form")
+        .separatedBy(',')
+        .oneWord()
+        .oneOf(namesOf(kLayers))
+        .type("LAYERS");
+    line_.flag("--quiet,-q", quiet_, "Print nothing");
   }
 
   ExportParams exportParams() const {
@@ -137,7 +133,7 @@ class LintelMap {
 
   std::ostream& out_;
   std::ostream& err_;
-  CLI::App app_{"Writes a line map in a form that other programs open.", kName};
+  CommandLine line_{kName, "Writes a line map in a form that other programs open."};
   std::string input_, style_, colour_ = "kind";
   std::vector<std::string> outputs_, layers_;
   ExportParams params_;
@@ -147,7 +143,7 @@ class LintelMap {
 }  // namespace
 
 int runLintelMap(int argc, const char* const* argv, std::ostream& out, std::ostream& err) {
-  return programMain(kName, err, [&] { return LintelMap(out, err).run(argc, argv); });
+  return programMain(LintelMap::kName, err, [&] { return LintelMap(out, err).run(argc, argv); });
 }
 
 }  // namespace lintel

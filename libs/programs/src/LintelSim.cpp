@@ -1,15 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "lintel/programs/LintelSim.h"
 
-#include <CLI/App.hpp>
-#include <CLI/Config.hpp>
-#include <CLI/Formatter.hpp>
 #include <filesystem>
 #include <iomanip>
 #include <ostream>
 #include <string>
 #include <thread>
 
+#include "CommandLine.h"
 #include "ProgramMain.h"
 #include "lintel/reporting/Progress.h"
 #include "lintel/simulation/Simulation.h"
@@ -19,10 +17,10 @@ namespace lintel {
 namespace {
 
 namespace fs = std::filesystem;
-constexpr const char* kName = "lintel-sim";
-
 class LintelSim {
  public:
+  static constexpr const char* kName = "lintel-sim";
+
   LintelSim(std::ostream& out, std::ostream& err) : out_(out), err_(err) {
     params_.threads = static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
     addOptions();
@@ -31,7 +29,7 @@ class LintelSim {
   }
 
   int run(int argc, const char* const* argv) {
-    if (const auto exit_code = parseArguments(app_, argc, argv, out_, err_)) return *exit_code;
+    if (const auto exit_code = line_.parse(argc, argv, out_, err_)) return *exit_code;
     const fs::path folder = fs::path(folder_ + "/.").lexically_normal().parent_path();  // without a slash at the end
     refuseToOverwrite(folder);
     if (noise_free_) {
@@ -54,57 +52,50 @@ class LintelSim {
       scenes += (scenes.empty() ? "" : "; ") + kind.name + ": " + kind.description;
       names.push_back(kind.name);
     }
-    app_.add_option("-o,--output", folder_, "Folder to make, in the form of the EuRoC recordings")
-        ->required()
-        ->type_name("FOLDER");
-    app_.add_option("--scene", params_.scene, scenes)->check(CLI::IsMember(names))->capture_default_str();
-    app_.add_option("--duration", params_.duration_s, "Length [s]; 0 = 30, or the whole trajectory file")
-        ->check(CLI::NonNegativeNumber)
-        ->capture_default_str();
-    app_.add_option("--seed", params_.seed, "Another seed: other textures, furniture, noise, biases")
-        ->capture_default_str();
-    app_.add_option("--threads", params_.threads, "Threads; the files do not depend on their number")
-        ->check(CLI::PositiveNumber)
-        ->capture_default_str();
-    app_.add_flag("--noise-free", noise_free_, "No IMU noise, zero biases, no image noise");
-    app_.add_flag("-w,--overwrite", overwrite_, "Replace the folder if it is there");
-    app_.add_flag("-q,--quiet", quiet_, "Print nothing");
+    line_.option("-o,--output", folder_, "Folder to make, in the form of the EuRoC recordings")
+        .required()
+        .type("FOLDER");
+    line_.option("--scene", params_.scene, scenes).oneOf(names).showDefault();
+    line_.option("--duration", params_.duration_s, "Length [s]; 0 = 30, or the whole trajectory file")
+        .notNegative()
+        .showDefault();
+    line_.option("--seed", params_.seed, "Another seed: other textures, furniture, noise, biases").showDefault();
+    line_.option("--threads", params_.threads, "Threads; the files do not depend on their number")
+        .positive()
+        .showDefault();
+    line_.flag("--noise-free", noise_free_, "No IMU noise, zero biases, no image noise");
+    line_.flag("-w,--overwrite", overwrite_, "Replace the folder if it is there");
+    line_.flag("-q,--quiet", quiet_, "Print nothing");
   }
 
   void addMotionOptions() {
     MotionParams& motion = params_.motion;
-    app_.add_option("--trajectory", motion.trajectory_file, "Follow these poses: TUM, or an EuRoC state CSV")
-        ->type_name("GT");
-    app_.add_option("--start", motion.start_s, "Skip so much of the trajectory file [s]")
-        ->check(CLI::NonNegativeNumber)
-        ->capture_default_str();
-    app_.add_option("--figure", motion.figure,
-                    "Built-in motion: full, translation (fixed attitude) or rotation (fixed place)")
-        ->check(CLI::IsMember({"full", "translation", "rotation"}))
-        ->capture_default_str();
-    app_.add_option("--speed", motion.speed, "How fast the figure is flown")
-        ->check(CLI::PositiveNumber)
-        ->capture_default_str();
-    app_.add_option("--static-start", motion.static_s, "Rest at the start [s]")
-        ->check(CLI::NonNegativeNumber)
-        ->capture_default_str();
+    line_.option("--trajectory", motion.trajectory_file, "Follow these poses: TUM, or an EuRoC state CSV").type("GT");
+    line_.option("--start", motion.start_s, "Skip so much of the trajectory file [s]").notNegative().showDefault();
+    line_
+        .option("--figure", motion.figure,
+                "Built-in motion: full, translation (fixed attitude) or rotation (fixed place)")
+        .oneOf({"full", "translation", "rotation"})
+        .showDefault();
+    line_.option("--speed", motion.speed, "How fast the figure is flown").positive().showDefault();
+    line_.option("--static-start", motion.static_s, "Rest at the start [s]").notNegative().showDefault();
   }
 
   void addFaultOptions() {
     CameraSensorParams& camera = params_.camera;
     const auto number = [this](const char* name, double& value, const char* help) {
-      return app_.add_option(name, value, help)->check(CLI::NonNegativeNumber)->capture_default_str();
+      return line_.option(name, value, help).notNegative().showDefault();
     };
     number("--image-noise", camera.noise, "Image noise; 1 = about one grey level");
     number("--imu-noise", params_.imu.noise_scale, "IMU noise; 1 = EuRoC's");
     number("--imu-bias", imu_bias_, "IMU biases at the start; 1 = as EuRoC's");
-    number("--bias-walk", params_.imu.walk_scale, "How fast the IMU biases roll away; 1 = EuRoC's");
+    number("--bias-walk", params_.imu.walk_scale, "How fast the IMU biases drift; 1 = EuRoC's");
     number("--blur", camera.exposure_time_s, "Exposure time: motion blur [s]");
     number("--exposure-change", camera.exposure_change, "Changes of the exposure (deviation of its logarithm)");
-    number("--vignetting", camera.vignetting, "Darkening in the corners")->check(CLI::Range(0.0, 1.0));
-    app_.add_option("--camera-delay", params_.camera_delay_s, "Images are older than their stamps by so much [s]")
-        ->check(CLI::Range(-0.1, 0.1))
-        ->capture_default_str();
+    number("--vignetting", camera.vignetting, "Darkening in the corners").range(0.0, 1.0);
+    line_.option("--camera-delay", params_.camera_delay_s, "Images are older than their stamps by so much [s]")
+        .range(-0.1, 0.1)
+        .showDefault();
     number("--calibration-error", params_.calibration_error,
            "sensor.yaml is wrong by so much; 1 = as a fair calibration");
     number("--drop-images", params_.drop_images_every_s, "0.3 s without images so often [s]; 0 = never");
@@ -147,7 +138,7 @@ class LintelSim {
 
   std::ostream& out_;
   std::ostream& err_;
-  CLI::App app_{"Makes a simulated recording: images, IMU, and everything true about them.", kName};
+  CommandLine line_{kName, "Makes a simulated recording: images, IMU, and everything true about them."};
   std::string folder_;
   SimulationParams params_;
   double imu_bias_ = 1;
@@ -157,7 +148,7 @@ class LintelSim {
 }  // namespace
 
 int runLintelSim(int argc, const char* const* argv, std::ostream& out, std::ostream& err) {
-  return programMain(kName, err, [&] { return LintelSim(out, err).run(argc, argv); });
+  return programMain(LintelSim::kName, err, [&] { return LintelSim(out, err).run(argc, argv); });
 }
 
 }  // namespace lintel

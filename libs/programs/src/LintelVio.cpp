@@ -1,9 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "lintel/programs/LintelVio.h"
 
-#include <CLI/App.hpp>
-#include <CLI/Config.hpp>
-#include <CLI/Formatter.hpp>
 #include <algorithm>
 #include <chrono>
 #include <cstdio>
@@ -15,6 +12,7 @@
 #include <ostream>
 #include <stdexcept>
 
+#include "CommandLine.h"
 #include "ProgramMain.h"
 #include "lintel/core/AtomicFile.h"
 #include "lintel/exporting/MapExport.h"
@@ -33,23 +31,14 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr const char* kName = "lintel-vio";
-
-std::string examples() {
-  return "Examples:\n"
-         "  lintel-vio MH_01_easy -o out                       an EuRoC folder (the one that holds mav0)\n"
-         "  lintel-vio flight.rawlog -o out --export glb,ply   a rawlog\n"
-         "  lintel-vio flight.rawlog -o out --from 10 --to 40  thirty seconds of it\n"
-         "  lintel-vio flight.rawlog -o out --set features=points   points alone\n"
-         "  lintel-vio --dump-config > my.yaml                 every option with its default";
-}
-
 class LintelVio {
  public:
+  static constexpr const char* kName = "lintel-vio";
+
   LintelVio(std::ostream& out, std::ostream& err) : out_(out), err_(err) { addOptions(); }
 
   int run(int argc, const char* const* argv) {
-    if (const auto exit_code = parseArguments(app_, argc, argv, out_, err_)) return *exit_code;
+    if (const auto exit_code = line_.parse(argc, argv, out_, err_)) return *exit_code;
     Configuration configuration = readOptions();
     if (no_refine_) configuration.refinement.enabled = false;
     if (dump_config_) {
@@ -78,34 +67,37 @@ class LintelVio {
   }
 
  private:
+  static std::string examples() {
+    return "Examples:\n"
+           "  lintel-vio MH_01_easy -o out                       an EuRoC folder (the one that holds mav0)\n"
+           "  lintel-vio flight.rawlog -o out --export glb,ply   a rawlog\n"
+           "  lintel-vio flight.rawlog -o out --from 10 --to 40  thirty seconds of it\n"
+           "  lintel-vio flight.rawlog -o out --set features=points   points alone\n"
+           "  lintel-vio --dump-config > my.yaml                 every option with its default";
+  }
+
   void addOptions() {
-    app_.footer(examples());
-    app_.add_option("input", input_, "A rawlog or an EuRoC folder (mav0 or its parent)")->type_name("INPUT");
-    app_.add_option("-o,--output", output_, "Folder to write to; made if it does not exist")->type_name("OUT");
-    app_.add_option("-c,--config", config_, "Configuration; what it leaves out keeps its default")
-        ->type_name("CONFIG.yaml");
-    app_.add_option("--set", settings_, "Set one option, e.g. --set estimator.keyframes=8")
-        ->type_name("KEY=VALUE")
-        ->take_all()
-        ->allow_extra_args(false);
-    app_.add_option("--from", recording_params_.from_s, "Start this long after the first frame [s]")
-        ->check(CLI::NonNegativeNumber);
-    app_.add_option("--to", recording_params_.to_s, "Stop this long after the first frame [s]; 0 = at the end")
-        ->check(CLI::NonNegativeNumber);
-    app_.add_option("--threads", threads_, "1: one stage after the other; 2: tracking beside estimation. Same result")
-        ->check(CLI::IsMember({1, 2}))
-        ->capture_default_str();
-    app_.add_option("--export", exports_, "Forms of the map to write, with commas between; none for no export")
-        ->delimiter(',')
-        ->allow_extra_args(false)
-        ->type_name("EXT,...");
-    app_.add_option("--draw-tracks", draw_tracks_,
-                    "Write every frame with its points and lines as a PNG to this folder")
-        ->type_name("DIR");
-    app_.add_flag("--no-refine", no_refine_, "Leave out the batch adjustment after the last frame");
-    app_.add_flag("-w,--overwrite", overwrite_, "Write into OUT although it holds the results of an earlier run");
-    app_.add_flag("-q,--quiet", quiet_, "No progress, no summary");
-    app_.add_flag("--dump-config", dump_config_, "Print the effective configuration and stop");
+    line_.footer(examples());
+    line_.option("input", input_, "A rawlog or an EuRoC folder (mav0 or its parent)").type("INPUT");
+    line_.option("-o,--output", output_, "Folder to write to; made if it does not exist").type("OUT");
+    line_.option("-c,--config", config_, "Configuration; what it leaves out keeps its default").type("CONFIG.yaml");
+    line_.option("--set", settings_, "Set one option, e.g. --set estimator.keyframes=8").type("KEY=VALUE").repeatable();
+    line_.option("--from", recording_params_.from_s, "Start this long after the first frame [s]").notNegative();
+    line_.option("--to", recording_params_.to_s, "Stop this long after the first frame [s]; 0 = at the end")
+        .notNegative();
+    line_.option("--threads", threads_, "1: one stage after the other; 2: tracking beside estimation. Same result")
+        .oneOf({"1", "2"})
+        .showDefault();
+    line_.option("--export", exports_, "Forms of the map to write, with commas between; none for no export")
+        .separatedBy(',')
+        .oneWord()
+        .type("EXT,...");
+    line_.option("--draw-tracks", draw_tracks_, "Write every frame with its points and lines as a PNG to this folder")
+        .type("DIR");
+    line_.flag("--no-refine", no_refine_, "Leave out the batch adjustment after the last frame");
+    line_.flag("-w,--overwrite", overwrite_, "Write into OUT although it holds the results of an earlier run");
+    line_.flag("-q,--quiet", quiet_, "No progress, no summary");
+    line_.flag("--dump-config", dump_config_, "Print the effective configuration and stop");
   }
 
   Configuration readOptions() const {
@@ -234,7 +226,7 @@ class LintelVio {
 
   std::ostream& out_;
   std::ostream& err_;
-  CLI::App app_{"Trajectory and 3D line map from a recording with a camera and an IMU.", kName};
+  CommandLine line_{kName, "Trajectory and 3D line map from a recording with a camera and an IMU."};
   std::string input_, output_, config_, draw_tracks_;
   std::vector<std::string> settings_, exports_{"glb", "obj", "ply", "3Dscene", "png"}, exported_;
   RecordingParams recording_params_;
@@ -248,7 +240,7 @@ class LintelVio {
 }  // namespace
 
 int runLintelVio(int argc, const char* const* argv, std::ostream& out, std::ostream& err) {
-  return programMain(kName, err, [&] { return LintelVio(out, err).run(argc, argv); });
+  return programMain(LintelVio::kName, err, [&] { return LintelVio(out, err).run(argc, argv); });
 }
 
 }  // namespace lintel

@@ -3,13 +3,8 @@
 
 #include <functional>
 #include <iosfwd>
-#include <optional>
 #include <stdexcept>
 #include <string>
-
-namespace CLI {
-class App;
-}
 
 namespace lintel {
 
@@ -23,9 +18,7 @@ class UsageError : public std::runtime_error {
 /// exit code 2 (UsageError) or 1 (anything else). Never throws.
 int programMain(const std::string& name, std::ostream& err, const std::function<int()>& body);
 
-/// Parses the command line with --version added. Empty if the program should go on; else its exit code: 0 after --help
-/// or --version (printed to `out`), 2 after a wrong command line (one line on `err`).
-std::optional<int> parseArguments(CLI::App& app, int argc, const char* const* argv, std::ostream& out,
-                                  std::ostream& err);
+/// `text` without line feeds, for a message of one line.
+std::string oneLine(std::string text);
 
 }  // namespace lintel
