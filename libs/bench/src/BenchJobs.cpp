@@ -14,7 +14,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-std::string shortest(double value) {
+std::string sixDigits(double value) {
   char text[32];
   std::snprintf(text, sizeof text, "%g", value);
   return text;
@@ -39,8 +39,8 @@ std::string hashOf(const std::string& text) {
 std::string keyOf(const BenchJob& job, const BenchRecording& recording, const BenchConfiguration& configuration) {
   const std::vector<std::string> words{version(),
                                        job.id,
-                                       shortest(job.from_s),
-                                       shortest(job.to_s),
+                                       sixDigits(job.from_s),
+                                       sixDigits(job.to_s),
                                        shellLine(job.simulation),
                                        contentOf(configuration.config),
                                        shellLine(configuration.settings),
@@ -57,7 +57,7 @@ std::vector<BenchJob> jobsOf(const BenchSuite& suite, const fs::path& out) {
     BenchJob job;
     job.recording = r;
     job.configuration = c;
-    job.repetition = (seed ? "seed" + std::to_string(*seed) + "-" : "") + "from" + shortest(start_s);
+    job.repetition = (seed ? "seed" + std::to_string(*seed) + "-" : "") + "from" + sixDigits(start_s);
     job.id = recording.name + "/" + suite.configurations[c].name + "/" + job.repetition;
     job.from_s = recording.from_s + start_s;
     job.to_s = recording.to_s;

@@ -6,11 +6,10 @@
 #include <fstream>
 #include <limits>
 
+#include "BenchJson.h"
 #include "lintel/core/Quantiles.h"
 
 namespace lintel {
-
-namespace {
 
 using Json = nlohmann::ordered_json;
 
@@ -20,6 +19,8 @@ Json readJson(const std::filesystem::path& path) {
   Json json = Json::parse(file, nullptr, false);
   return json.is_discarded() ? Json() : json;
 }
+
+namespace {
 
 BenchRun readRun(const BenchJob& job) {
   BenchRun run;

@@ -13,6 +13,7 @@
 #include <nlohmann/json.hpp>
 #include <stdexcept>
 
+#include "BenchJson.h"
 #include "lintel/core/AtomicFile.h"
 #include "lintel/core/ChildProcess.h"
 #include "lintel/evaluation/TrajectoryFile.h"
@@ -45,7 +46,7 @@ class FolderLock {
   int descriptor_ = -1;
 };
 
-std::string shortest(double value) {
+std::string nineDigits(double value) {
   char text[32];
   std::snprintf(text, sizeof text, "%.9g", value);
   return text;
@@ -65,11 +66,6 @@ std::string lastLine(const std::string& text) {
   const std::size_t begin = text.rfind('\n', end);
   return text.substr(begin == std::string::npos ? 0 : begin + 1,
                      end - (begin == std::string::npos ? 0 : begin + 1) + 1);
-}
-
-Json readJson(const fs::path& path) {
-  std::ifstream file(path);
-  return file ? Json::parse(file, nullptr, false) : Json();
 }
 
 /// Keeps part of the truth beside the run, so that tables and plots can be made where the recording is not.
@@ -134,8 +130,8 @@ std::string BenchRunner::odometry(const BenchJob& job, const fs::path& part) con
                                  "-q",         "--export",         "none", "--threads",   std::to_string(vio_threads_)};
   if (!configuration.config.empty()) words.insert(words.end(), {"-c", configuration.config});
   for (const std::string& setting : configuration.settings) words.insert(words.end(), {"--set", setting});
-  if (job.from_s > 0) words.insert(words.end(), {"--from", shortest(job.from_s)});
-  if (job.to_s > 0) words.insert(words.end(), {"--to", shortest(job.to_s)});
+  if (job.from_s > 0) words.insert(words.end(), {"--from", nineDigits(job.from_s)});
+  if (job.to_s > 0) words.insert(words.end(), {"--to", nineDigits(job.to_s)});
   return runProgram(words, part / "log.txt");
 }
 

@@ -42,7 +42,7 @@ void addSegments(const DrawnPart& part, CSetOfObjects& scene) {
   }
 }
 
-void addPoints(const DrawnPart& part, CSetOfObjects& scene) {
+void addPointCloud(const DrawnPart& part, CSetOfObjects& scene) {
   auto cloud = CPointCloudColoured::Create();
   cloud->setName(part.name);
   cloud->setPointSize(kPointSize_px);
@@ -85,7 +85,7 @@ OutputFiles sceneFiles(const Drawing& drawing, const std::string& path) {
   for (const DrawnPart& part : drawing.parts) {
     auto objects = CSetOfObjects::Create();
     if (!part.segments.empty()) addSegments(part, *objects);
-    if (!part.points.empty()) addPoints(part, *objects);
+    if (!part.points.empty()) addPointCloud(part, *objects);
     objects->setName(part.name);
     scene.insert(objects);
   }

@@ -18,7 +18,7 @@ namespace lintel {
 namespace {
 
 /// A view in the form that the fit uses.
-struct FitView {
+struct LineFitView {
   Eigen::Matrix3d R_c_w;
   Eigen::Vector3d p_w_c, ends[2];
   double weight = 0;
@@ -29,8 +29,8 @@ struct LineNormal : NormalEquations4 {
   Eigen::Matrix4d H_tie = Eigen::Matrix4d::Zero();
 };
 
-std::vector<FitView> fitViews(const KeyframeCameras& cameras, const LineRecord& line) {
-  std::vector<FitView> views;
+std::vector<LineFitView> fitViews(const KeyframeCameras& cameras, const LineRecord& line) {
+  std::vector<LineFitView> views;
   for (const LineView& v : line.views) {
     if (!v.inlier || !cameras.contains(v.keyframe)) continue;
     views.push_back({cameras.R_c_w(v.keyframe),
@@ -43,7 +43,7 @@ std::vector<FitView> fitViews(const KeyframeCameras& cameras, const LineRecord& 
 
 /// What lines are fitted to.
 struct FitData {
-  std::vector<FitView> views;
+  std::vector<LineFitView> views;
   std::optional<LineTie> tie;
   double loss_width = 1;
 };
@@ -88,7 +88,7 @@ LineNormal normalEquations(const FitData& data, const LineEstimate& line) {
   LineNormal normal;
   LogProduct loss;
   if (data.tie) addTie(*data.tie, m, d, normal);
-  for (const FitView& v : data.views) {
+  for (const LineFitView& v : data.views) {
     const Eigen::Vector3d arm = m - v.p_w_c;
     const LineDistances distances(v.ends, v.R_c_w * arm.cross(d), v.weight);
     Eigen::Matrix<double, 3, 4> d_l;  // of l in the camera by (a, b)
@@ -109,7 +109,7 @@ LineNormal normalEquations(const FitData& data, const LineEstimate& line) {
 /// Start from all observation planes, and the tie's direction and points.
 bool startFromPlanes(const FitData& data, LineEstimate& line) {
   std::vector<ObservationPlane> planes;
-  for (const FitView& v : data.views) {
+  for (const LineFitView& v : data.views) {
     const Eigen::Vector3d cross = v.ends[0].cross(v.ends[1]);
     if (cross.norm() >= 1e-9) planes.push_back({v.R_c_w.transpose() * cross.normalized(), v.p_w_c});
   }
@@ -126,10 +126,10 @@ bool startFromPlanes(const FitData& data, LineEstimate& line) {
 }
 
 /// Moves the middle to where the views are, along the line. The median: one view at a grazing angle must not count.
-bool centre(const std::vector<FitView>& views, LineEstimate& line, double& distance_m) {
+bool centre(const std::vector<LineFitView>& views, LineEstimate& line, double& distance_m) {
   constexpr double kLeastSine2 = 1e-6;  // of the angle between ray and line: 0.06 degrees
   std::vector<double> places, distances;
-  for (const FitView& v : views) {
+  for (const LineFitView& v : views) {
     const Eigen::Vector3d ray_w = (v.R_c_w.transpose() * (v.ends[0] + v.ends[1])).normalized();
     const NearestToRay nearest = nearestToRay(line, v.p_w_c, ray_w);
     if (nearest.sine2 < kLeastSine2 || nearest.depth_m <= 0) continue;
@@ -201,7 +201,7 @@ bool fitLine(const KeyframeCameras& cameras, const LineFitParams& params, LineRe
   for (LineView& v : line.views) v.inlier = true;
   for (int pass = 0; pass < 3; ++pass) {
     const FitData data{fitViews(cameras, line), line.tie, params.loss_width};
-    const std::vector<FitView>& views = data.views;
+    const std::vector<LineFitView>& views = data.views;
     if (views.size() < 2 || keyframesOf(line) < 2) return false;
     LineEstimate candidate;
     double cost = std::numeric_limits<double>::infinity();

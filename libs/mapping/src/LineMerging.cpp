@@ -18,14 +18,14 @@ namespace lintel {
 
 namespace {
 
-constexpr double kCell_m = 0.3;  // lines with places nearer than this are always compared
+constexpr double kLineCell_m = 0.3;  // lines with places nearer than this are always compared
 constexpr double kApart =
     200;  // squared standard deviations between two estimates: farther apart they are not compared
 
-struct Candidate {
+struct LinePair {
   double score = 0;
   std::size_t a = 0, b = 0;
-  bool operator<(const Candidate& o) const { return std::tie(score, a, b) < std::tie(o.score, o.a, o.b); }
+  bool operator<(const LinePair& o) const { return std::tie(score, a, b) < std::tie(o.score, o.a, o.b); }
 };
 
 /// Squared Mahalanobis distance of two lines: of their positions, where `a` was seen, and directions, both across `a`.
@@ -59,12 +59,12 @@ class LineMerger {
 
   int run() {
     int merged = 0;
-    const std::vector<Candidate> all = candidates();
-    for (const Candidate& candidate : all)
+    const std::vector<LinePair> all = candidates();
+    for (const LinePair& candidate : all)
       merged += tryMerge(merged_.rootOf(candidate.a), merged_.rootOf(candidate.b), 0);
     if (drift_px_ > 0) {
       findRivals(all);
-      for (const Candidate& candidate : all)
+      for (const LinePair& candidate : all)
         merged += tryMerge(merged_.rootOf(candidate.a), merged_.rootOf(candidate.b), drift_px_);
     }
     merged_.compact(lines_);
@@ -80,19 +80,19 @@ class LineMerger {
     return stretch ? segmentOf(cameras_, line, *stretch) : Segment3{};
   }
 
-  std::vector<Candidate> candidates() const {
-    SpatialIndex index(kCell_m);
+  std::vector<LinePair> candidates() const {
+    SpatialIndex index(kLineCell_m);
     constexpr int kMostSamples = 2000;  // of lines with wrong, very large extents
     for (std::size_t i = 0; i < lines_.size(); ++i) {
       const double length = segments_[i].length();
       if (length <= 0) continue;
-      const int n = std::min(kMostSamples, 1 + static_cast<int>(2 * length / kCell_m));
+      const int n = std::min(kMostSamples, 1 + static_cast<int>(2 * length / kLineCell_m));
       for (int k = 0; k <= n; ++k)
         index.add(i, segments_[i].start + (segments_[i].end - segments_[i].start) * (static_cast<double>(k) / n));
     }
-    std::vector<Candidate> result;
+    std::vector<LinePair> result;
     for (const auto& [a, b] : index.pairs()) {
-      Candidate candidate{0, a, b};
+      LinePair candidate{0, a, b};
       if (near(a, b, candidate.score)) result.push_back(candidate);
     }
     std::sort(result.begin(), result.end());
@@ -128,9 +128,9 @@ class LineMerger {
   }
 
   /// For every line the candidates that are left after merging without drift.
-  void findRivals(const std::vector<Candidate>& candidates) {
+  void findRivals(const std::vector<LinePair>& candidates) {
     rivals_.assign(lines_.size(), {});
-    for (const Candidate& candidate : candidates) {
+    for (const LinePair& candidate : candidates) {
       const std::size_t a = merged_.rootOf(candidate.a), b = merged_.rootOf(candidate.b);
       if (a != b) rivals_[a].push_back(b), rivals_[b].push_back(a);
     }

@@ -11,7 +11,7 @@ namespace lintel {
 
 namespace {
 
-struct FitView {
+struct PointFitView {
   Eigen::Matrix3d R_c_w;
   Eigen::Vector3d p_w_c;
   Eigen::Vector2d seen;
@@ -25,11 +25,11 @@ struct Homogeneous {
 };
 
 /// The cost is infinite when the point is not in front of all cameras.
-NormalEquations4 normalEquations(const std::vector<FitView>& views, const Eigen::Vector3d& origin_w,
+NormalEquations4 normalEquations(const std::vector<PointFitView>& views, const Eigen::Vector3d& origin_w,
                                  const Homogeneous& point, double weight, double loss_width) {
   NormalEquations4 normal;
   const double width2 = loss_width * loss_width;
-  for (const FitView& v : views) {
+  for (const PointFitView& v : views) {
     const Eigen::Vector3d baseline = v.R_c_w * (origin_w - v.p_w_c), g = v.R_c_w * point.X + point.w * baseline;
     if (g.z() < 1e-3) {
       normal.cost = std::numeric_limits<double>::infinity();
@@ -52,10 +52,10 @@ NormalEquations4 normalEquations(const std::vector<FitView>& views, const Eigen:
   return normal;
 }
 
-double linearInverseDistance(const std::vector<FitView>& views, const Eigen::Vector3d& origin_w,
+double linearInverseDistance(const std::vector<PointFitView>& views, const Eigen::Vector3d& origin_w,
                              const Eigen::Vector3d& ray_w) {
   double ab = 0, bb = 0;  // x_j x (ray + w baseline) = 0
-  for (const FitView& v : views) {
+  for (const PointFitView& v : views) {
     const Eigen::Vector3d x = v.seen.homogeneous().normalized();
     const Eigen::Vector3d a = x.cross(v.R_c_w * ray_w), b = x.cross(v.R_c_w * (origin_w - v.p_w_c));
     ab += a.dot(b);
@@ -64,7 +64,7 @@ double linearInverseDistance(const std::vector<FitView>& views, const Eigen::Vec
   return bb > 0 ? -ab / bb : 0;
 }
 
-bool estimate(const std::vector<FitView>& views, const PointFitParams& params, double focal, PointRecord& point) {
+bool estimate(const std::vector<PointFitView>& views, const PointFitParams& params, double focal, PointRecord& point) {
   const Eigen::Vector3d origin_w = views.front().p_w_c;
   Homogeneous h;
   h.X = (views.front().R_c_w.transpose() * views.front().seen.homogeneous()).normalized();
@@ -106,7 +106,7 @@ bool fitPoint(const KeyframeCameras& cameras, const PointFitParams& params, Poin
   for (PointView& v : point.views) v.inlier = cameras.contains(v.keyframe);
   bool found = false;
   for (int pass = 0; pass < 3; ++pass) {
-    std::vector<FitView> views;
+    std::vector<PointFitView> views;
     for (const PointView& v : point.views)
       if (v.inlier)
         views.push_back({cameras.R_c_w(v.keyframe), cameras.T_w_c(v.keyframe).p, cameras.camera().normalise(v.px)});

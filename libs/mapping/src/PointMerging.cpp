@@ -13,12 +13,12 @@ namespace lintel {
 
 namespace {
 
-constexpr double kCell_m = 0.1;  // points nearer than this are always compared
+constexpr double kPointCell_m = 0.1;  // points nearer than this are always compared
 
-struct Candidate {
+struct PointPair {
   double distance_m = 0;
   std::size_t a = 0, b = 0;
-  bool operator<(const Candidate& o) const { return std::tie(distance_m, a, b) < std::tie(o.distance_m, o.a, o.b); }
+  bool operator<(const PointPair& o) const { return std::tie(distance_m, a, b) < std::tie(o.distance_m, o.a, o.b); }
 };
 
 /// Whether the position of one is where the other was seen, in pixels: as a first look.
@@ -35,16 +35,16 @@ bool projectsOnto(const KeyframeCameras& cameras, const PointRecord& a, const Po
 
 int mergePoints(const KeyframeCameras& cameras, const PointFitParams& fit, const MergeParams& params,
                 std::vector<PointRecord>& points) {
-  SpatialIndex index(kCell_m);
+  SpatialIndex index(kPointCell_m);
   for (std::size_t i = 0; i < points.size(); ++i)
     if (points[i].known) index.add(i, points[i].p_w);
-  std::vector<Candidate> candidates;
+  std::vector<PointPair> candidates;
   for (const auto& [a, b] : index.pairs()) candidates.push_back({(points[a].p_w - points[b].p_w).norm(), a, b});
   std::sort(candidates.begin(), candidates.end());
 
   MergedRecords records(points.size());
   int merged = 0;
-  for (const Candidate& candidate : candidates) {
+  for (const PointPair& candidate : candidates) {
     const std::size_t a = std::min(records.rootOf(candidate.a), records.rootOf(candidate.b)),
                       b = std::max(records.rootOf(candidate.a), records.rootOf(candidate.b));
     if (a == b || shareKeyframe(points[a], points[b])) continue;

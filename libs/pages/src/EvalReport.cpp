@@ -3,6 +3,7 @@
 
 #include <sstream>
 
+#include "Degrees.h"
 #include "lintel/evaluation/Output.h"
 #include "lintel/pages/Plots.h"
 #include "lintel/reporting/HtmlPage.h"
@@ -10,8 +11,6 @@
 namespace lintel {
 
 namespace {
-
-constexpr double kDegrees = 180.0 / 3.14159265358979323846;
 
 std::string metres(double value) { return fixedText(value, 4) + " m"; }
 

@@ -4,14 +4,13 @@
 #include <algorithm>
 #include <cmath>
 
+#include "Degrees.h"
 #include "lintel/geometry/Rotation.h"
 #include "lintel/reporting/Table.h"
 
 namespace lintel {
 
 namespace {
-
-constexpr double kDegrees = 180.0 / 3.14159265358979323846;
 
 // Limits of what is usual: results of good recordings lie well within.
 constexpr double kLateStart_s = 5;

@@ -20,7 +20,7 @@ namespace lintel {
 
 namespace {
 
-constexpr double kNothing = std::numeric_limits<double>::quiet_NaN();
+constexpr double kGap = std::numeric_limits<double>::quiet_NaN();
 
 StampedPoses stampedPoses(const std::vector<OdometryPose>& trajectory) {
   StampedPoses poses;
@@ -102,7 +102,7 @@ class Report {
   Curve over(const std::string& title, bool window_only, const Value& value) const {
     Curve curve{title, {}};
     for (const RunFrame& frame : frames_) {
-      if (frame.lost) curve.points.push_back({kNothing, kNothing});
+      if (frame.lost) curve.points.push_back({kGap, kGap});
       if (frame.in_window || !window_only) curve.points.push_back({secondsAt(frame), value(frame)});
     }
     curve.points = thinned(curve.points);

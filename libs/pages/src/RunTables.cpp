@@ -3,13 +3,12 @@
 
 #include <algorithm>
 
+#include "Degrees.h"
 #include "lintel/geometry/Rotation.h"
 
 namespace lintel {
 
 namespace {
-
-constexpr double kDegrees = 180.0 / 3.14159265358979323846;
 
 /// Rows of one table: a quantity as given, as the window had it, its sigma, and after the batch refinement.
 class CalibrationRows {

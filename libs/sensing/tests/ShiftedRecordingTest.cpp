@@ -8,7 +8,7 @@
 namespace lintel {
 namespace {
 
-constexpr std::int64_t kMs = 1000000;
+constexpr std::int64_t kMillisecond_ns = 1000000;
 
 /// Frames every 50 ms; gyro.x is the time in milliseconds, samples every 5 ms.
 class Counting : public Recording {
@@ -19,9 +19,9 @@ class Counting : public Recording {
     if (next_ == frames_) return std::nullopt;
     const int t_ms = 1000 + 50 * next_++;
     FrameWithImu step;
-    step.frame.t_ns = t_ms * kMs;
+    step.frame.t_ns = t_ms * kMillisecond_ns;
     for (int t = t_ms - (t_ms == 1000 ? 500 : 50); t <= t_ms; t += 5)
-      step.imu.push_back({t * kMs, {double(t), 0, 0}, Eigen::Vector3d::Zero()});
+      step.imu.push_back({t * kMillisecond_ns, {double(t), 0, 0}, Eigen::Vector3d::Zero()});
     return step;
   }
   std::size_t expectedFrames() const override { return static_cast<std::size_t>(frames_); }
@@ -41,7 +41,7 @@ TEST(ShiftedRecording, AFrameGetsTheSamplesOfItsTimeOnTheOtherClock) {
     int frames = 0;
     std::int64_t last_ns = 0;
     while (const auto step = shifted.next()) {
-      EXPECT_EQ(step->frame.t_ns, (1000 + 50 * frames) * kMs);
+      EXPECT_EQ(step->frame.t_ns, (1000 + 50 * frames) * kMillisecond_ns);
       ++frames;
       if (frames > 38) continue;  // with the later clock the last frames are not covered
       ASSERT_FALSE(step->imu.empty()) << frames;

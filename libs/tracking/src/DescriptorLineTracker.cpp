@@ -31,7 +31,7 @@ cv::line_descriptor::KeyLine keyLine(const LineCamera& camera, const ImageLine& 
   return key;
 }
 
-struct Pair {
+struct Match {
   std::size_t from, to;
   int distance;
 };
@@ -62,7 +62,7 @@ std::vector<std::optional<std::size_t>> LineMatcher::match(const std::vector<Ima
                                                            const cv::Mat& from_descriptors,
                                                            const std::vector<ImageLine>& to,
                                                            const cv::Mat& to_descriptors) const {
-  std::vector<Pair> pairs;
+  std::vector<Match> pairs;
   for (std::size_t f = 0; f < expected.size(); ++f)
     for (std::size_t t = 0; t < to.size(); ++t) {
       const LineRelation relation = relate(expected[f], to[t]);
@@ -73,10 +73,10 @@ std::vector<std::optional<std::size_t>> LineMatcher::match(const std::vector<Ima
                                                      to_descriptors.row(static_cast<int>(t)), cv::NORM_HAMMING));
       if (distance <= params_.descriptor_distance) pairs.push_back({f, t, distance});
     }
-  std::stable_sort(pairs.begin(), pairs.end(), [](const Pair& a, const Pair& b) { return a.distance < b.distance; });
+  std::stable_sort(pairs.begin(), pairs.end(), [](const Match& a, const Match& b) { return a.distance < b.distance; });
   std::vector<std::optional<std::size_t>> matches(to.size());
   std::vector<char> used(expected.size(), 0);
-  for (const Pair& pair : pairs) {
+  for (const Match& pair : pairs) {
     if (used[pair.from] || matches[pair.to]) continue;
     used[pair.from] = 1;
     matches[pair.to] = pair.from;

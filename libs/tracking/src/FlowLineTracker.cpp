@@ -12,8 +12,8 @@ constexpr double kSlack = 1.5;               ///< of a jump's limit: the edge is
 constexpr double kFade = 0.8;                ///< decay of a drift per frame: a mean over about five frames
 
 // Pixels of the image, whatever the focal length: they are multiples of the error with which an edge is found.
-constexpr double kNoise_px = 0.35;  ///< of an end across the line, from frame to frame
-constexpr double kSureDepth_px =
+constexpr double kEndNoise_px = 0.35;  ///< of an end across the line, from frame to frame
+constexpr double kUsedDepth_px =
     1.0;                            ///< depths that predict the line less exactly are not used: three times the noise
 constexpr double kMaxDrift_px = 4;  ///< a line that drifts further follows another edge: a dozen times the noise
 constexpr double kJump_px = 2.5;    ///< so far from where it was expected a line must look as before
@@ -113,11 +113,11 @@ bool FlowLineTracker::moveTo(const ImagePyramid& pyramid, const ImageLine& line,
   if (track.motion && deviation_px > kJump_px && sides && track.sides && !maybeSameEdge(*sides, *track.sides))
     return false;
   if (sides) track.sides = sides;
-  const double noise_px = std::max(kNoise_px, track.typical_px);
+  const double noise_px = std::max(kEndNoise_px, track.typical_px);
   if (track.carried) {
-    const bool sure = track.carried->sigma_px.maxCoeff() < kSureDepth_px;
+    const bool sure = track.carried->sigma_px.maxCoeff() < kUsedDepth_px;
     track.drift *= kFade;
-    if (sure) track.drift += deviation * (kNoise_px / noise_px);
+    if (sure) track.drift += deviation * (kEndNoise_px / noise_px);
     if (track.drift.cwiseAbs().maxCoeff() > kMaxDrift_px) return false;
     track.depth = observe(*track.carried, track.turned, line, step.t_c1(), camera_.focal(), noise_px);
   } else {

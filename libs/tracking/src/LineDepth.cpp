@@ -7,8 +7,8 @@
 namespace lintel {
 namespace {
 
-constexpr double kDrift = 0.008;     ///< relative growth of a depth's uncertainty per step: the translation's errors
-constexpr double kAssumedSigma = 1;  ///< of an assumed inverse depth, relative: unknown
+constexpr double kDepthDrift = 0.008;  ///< relative growth of a depth's uncertainty per step: the translation's errors
+constexpr double kAssumedSigma = 1;    ///< of an assumed inverse depth, relative: unknown
 
 InverseDepth interpolate(const LineDepth& depth, double share) {
   return {(1 - share) * depth.start.w + share * depth.end.w,
@@ -32,7 +32,7 @@ CarriedDepth carry(const LineDepth& depth, const ImageLine& line, const ImageLin
                        double& sigma_px) -> Eigen::Vector2d {
     const double z = std::max((R_c1_c0 * (u0 / focal_px).homogeneous()).z(), 0.1);
     to = {carriedInverseDepth(from.w / z, t_c1), from.variance / (z * z)};
-    to.variance += kDrift * kDrift * to.w * to.w;
+    to.variance += kDepthDrift * kDepthDrift * to.w * to.w;
     const Eigen::Vector2d e = focal_px * parallaxDirection(u1 / focal_px, t_c1);
     sigma_px = std::abs(n.dot(e)) * std::sqrt(to.variance);
     return u1 + to.w * e;

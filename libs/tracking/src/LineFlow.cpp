@@ -12,8 +12,9 @@ namespace {
 
 // Limits of the image itself: noise, blur, and how exactly a patch or an edge is found. They do not scale with the
 // camera.
-constexpr double kMinTexture = 1e-3;  ///< a patch on a plain edge has nearly none along it, and is used
-constexpr double kSettled_px = 0.03;  ///< a smaller step ends optical flow: a tenth of the error it is taken to have
+constexpr double kLineTexture = 1e-3;  ///< a patch on a plain edge has nearly none along it, and is used
+constexpr double kLineSettled_px =
+    0.03;  ///< a smaller step ends optical flow: a tenth of the error it is taken to have
 constexpr double kFitTolerance_px = 1.5;  ///< of a sample from the line: five times the error of optical flow
 constexpr double kSureDepth_px = 1.5;     ///< a line whose depth predicts it less exactly is expected to move as before
 constexpr double kTolerance_px = 2;       ///< a line may always be this far from where it is expected
@@ -141,7 +142,7 @@ std::vector<PredictedLine> LineFlow::follow(const std::vector<CarriedLine>& line
                                             const Reach& reach) const {
   const Samples samples = sample(lines, gyro, points);
   std::vector<cv::Point2f> to = samples.guess;
-  const PatchFlowParams flow{reach.window_px, reach.levels, params_.max_iterations, kSettled_px, kMinTexture};
+  const PatchFlowParams flow{reach.window_px, reach.levels, params_.max_iterations, kLineSettled_px, kLineTexture};
   const std::vector<unsigned char> found = followPatches(pyramid.previous(), pyramid.current(), samples.from, flow, to);
   std::vector<PredictedLine> followed;
   for (std::size_t i = 0; i < lines.size(); ++i)

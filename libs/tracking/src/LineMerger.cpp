@@ -11,7 +11,7 @@ constexpr double kGap_px = 15;                 ///< from a line to what continue
 constexpr double kDuplicateDistance_px = 1.5;  ///< of the image: two lines on one edge differ by their noise
 constexpr double kDuplicateOverlap = 0.5;      ///< of the shorter one
 
-struct Pair {
+struct Overlap {
   std::size_t predicted, detected;
   double score;
 };
@@ -49,15 +49,15 @@ double LineMerger::score(const ImageLine& predicted, const ImageLine& detected) 
 }
 
 MergedLines LineMerger::merge(const std::vector<ImageLine>& predicted, const std::vector<ImageLine>& detected) const {
-  std::vector<Pair> pairs;
+  std::vector<Overlap> pairs;
   for (std::size_t p = 0; p < predicted.size(); ++p)
     for (std::size_t d = 0; d < detected.size(); ++d)
       if (const double s = score(predicted[p], detected[d]); s > 0) pairs.push_back({p, d, s});
-  std::stable_sort(pairs.begin(), pairs.end(), [](const Pair& a, const Pair& b) { return a.score > b.score; });
+  std::stable_sort(pairs.begin(), pairs.end(), [](const Overlap& a, const Overlap& b) { return a.score > b.score; });
 
   MergedLines merged{predicted, std::vector<int>(predicted.size(), 0), {}};
   std::vector<char> taken(detected.size(), 0);
-  for (const Pair& pair : pairs) {
+  for (const Overlap& pair : pairs) {
     if (taken[pair.detected]) continue;
     taken[pair.detected] = 1;
     ++merged.detections[pair.predicted];

@@ -10,13 +10,13 @@
 namespace lintel {
 namespace {
 
-constexpr double kSettled_px = 0.03;  ///< a smaller step ends optical flow: PatchAnchors places old points exactly
-constexpr double kMinTexture = 0.1;   ///< patches with less are lost: far below a corner [grey levels^2/px^2]
-constexpr int kSteadyLevels = 2;      ///< of the pyramid for points whose motion is known: 10 px of change
-constexpr int kBackwardLevels = 1;    ///< of the pyramid for tracking back, which starts at the result
-constexpr int kProven = 5;            ///< frames after which a point that matches its patch is not tracked back
-constexpr double kCrowded = 0.5;      ///< of the distance that new points keep: tracks may approach, but not coincide
-constexpr int kInliersForGyro = 15;   ///< with fewer their rotation does not correct that of the gyroscope
+constexpr double kPointSettled_px = 0.03;  ///< a smaller step ends optical flow: PatchAnchors places old points exactly
+constexpr double kPointTexture = 0.1;      ///< patches with less are lost: far below a corner [grey levels^2/px^2]
+constexpr int kSteadyLevels = 2;           ///< of the pyramid for points whose motion is known: 10 px of change
+constexpr int kBackwardLevels = 1;         ///< of the pyramid for tracking back, which starts at the result
+constexpr int kProven = 5;                 ///< frames after which a point that matches its patch is not tracked back
+constexpr double kCrowded = 0.5;     ///< of the distance that new points keep: tracks may approach, but not coincide
+constexpr int kInliersForGyro = 15;  ///< with fewer their rotation does not correct that of the gyroscope
 constexpr int kInliersForDirection = 10;  ///< of a translation
 
 bool inside(const PinholeRadtan& camera, const cv::Point2f& p, double border) {
@@ -40,7 +40,7 @@ PointTracker::PointTracker(const Rig& rig, const PointTrackerParams& params)
       step_(rig.camera.meanFocal()) {}
 
 PatchFlowParams PointTracker::flowParams(int levels) const {
-  return {params_.window_px, levels, params_.max_iterations, kSettled_px, kMinTexture};
+  return {params_.window_px, levels, params_.max_iterations, kPointSettled_px, kPointTexture};
 }
 
 std::vector<cv::Point2f> PointTracker::pixels() const {

@@ -9,11 +9,11 @@
 namespace lintel {
 namespace {
 
-constexpr double kNoise_px = 0.3;      ///< of a point's place in the image, whatever the focal length
-constexpr double kStill_px = 0.3;      ///< median motion below this noise has no direction
-constexpr std::size_t kMinPoints = 5;  ///< with a known depth, to carry the unit on: a median of fewer is not robust
-constexpr double kDrift = 0.03;        ///< relative growth of a depth's uncertainty per step: the length's error
-constexpr double kGate = 4;            ///< standard deviations; a measurement beyond is not used
+constexpr double kPointNoise_px = 0.3;  ///< of a point's place in the image, whatever the focal length
+constexpr double kStill_px = 0.3;       ///< median motion below this noise has no direction
+constexpr std::size_t kMinPoints = 5;   ///< with a known depth, to carry the unit on: a median of fewer is not robust
+constexpr double kLengthDrift = 0.03;   ///< relative growth of a depth's uncertainty per step: the length's error
+constexpr double kGate = 4;             ///< standard deviations; a measurement beyond is not used
 
 }  // namespace
 
@@ -67,13 +67,13 @@ void StepTranslation::updatePoints(const std::vector<Ray>& rays, const Eigen::Ve
     std::optional<InverseDepth> depth = ray.depth;
     if (depth) {
       depth->w = carriedInverseDepth(depth->w, length * direction);
-      depth->variance += kDrift * kDrift * depth->w * depth->w;
+      depth->variance += kLengthDrift * kLengthDrift * depth->w * depth->w;
     }
     const Eigen::Vector2d e = length * parallaxDirection(ray.x, direction);
     const double squares = e.squaredNorm();
     if (squares > 1e-12) {
       const double w = ray.motion.dot(e) / squares;
-      const double variance = kNoise_px * kNoise_px / (focal_px_ * focal_px_ * squares);
+      const double variance = kPointNoise_px * kPointNoise_px / (focal_px_ * focal_px_ * squares);
       if (!depth) {
         depth = InverseDepth{w, variance};
       } else if (std::pow(w - depth->w, 2) < kGate * kGate * (variance + depth->variance)) {

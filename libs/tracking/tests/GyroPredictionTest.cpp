@@ -9,13 +9,13 @@
 namespace lintel {
 namespace {
 
-constexpr std::int64_t kStep_ns = 50'000'000;
+constexpr std::int64_t kGyroStep_ns = 50'000'000;
 
 TEST(GyroPrediction, turnsTheCameraThroughTheExtrinsics) {
   const Rig rig = testing::testRig();
   GyroPrediction gyro(rig, 0.1);
   const Eigen::Vector3d rate_b(0.4, -0.6, 0.8);
-  ASSERT_TRUE(gyro.predict(testing::constantRate(0, kStep_ns, rate_b), 0.05));
+  ASSERT_TRUE(gyro.predict(testing::constantRate(0, kGyroStep_ns, rate_b), 0.05));
   const Eigen::Quaterniond R_w_b1 = expRotation(rate_b * 0.05);
   const Eigen::Quaterniond expected = (R_w_b1 * rig.T_b_c.q).conjugate() * rig.T_b_c.q;
   EXPECT_LT(expected.angularDistance(gyro.R_c1_c0()), 1e-9);
@@ -27,7 +27,7 @@ TEST(GyroPrediction, learnsTheBias) {
   const Eigen::Vector3d rate_b(0.1, 0.3, -0.2), bias(0.08, -0.05, 0.03);
   const Eigen::Quaterniond truth = (expRotation(rate_b * 0.05) * rig.T_b_c.q).conjugate() * rig.T_b_c.q;
   for (int i = 0; i < 40; ++i) {
-    gyro.predict(testing::constantRate(i * kStep_ns, (i + 1) * kStep_ns, rate_b + bias), 0.05);
+    gyro.predict(testing::constantRate(i * kGyroStep_ns, (i + 1) * kGyroStep_ns, rate_b + bias), 0.05);
     gyro.correct(logRotation(truth * gyro.R_c1_c0().conjugate()), Eigen::Matrix3d::Identity() / (3e-4 * 3e-4));
   }
   EXPECT_LT((gyro.bias() - bias).norm(), 2e-3);
@@ -35,7 +35,7 @@ TEST(GyroPrediction, learnsTheBias) {
 
 TEST(GyroPrediction, goesOnTurningWithoutGyro) {
   GyroPrediction gyro(testing::testRig(), 0.1);
-  gyro.predict(testing::constantRate(0, kStep_ns, {0, 0, 1}), 0.05);
+  gyro.predict(testing::constantRate(0, kGyroStep_ns, {0, 0, 1}), 0.05);
   const Eigen::Quaterniond first = gyro.R_c1_c0();
   EXPECT_FALSE(gyro.predict({}, 0.1));
   EXPECT_LT((first * first).angularDistance(gyro.R_c1_c0()), 1e-9);

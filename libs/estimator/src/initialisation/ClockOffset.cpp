@@ -82,7 +82,7 @@ void addRays(const FrameTracks& a, const FrameTracks& b, const Eigen::Quaternion
                            R_b_c * b.points[common[i].second].normalised.homogeneous().normalized());
 }
 
-std::vector<TimedPair> makePairs(const std::vector<FrameTracks>& frames, const GyroPath& path, const Rig& rig) {
+std::vector<TimedPair> timedPairs(const std::vector<FrameTracks>& frames, const GyroPath& path, const Rig& rig) {
   const std::int64_t margin = nanoseconds(kLargestClockOffset_s + kStep_s);
   std::vector<TimedPair> pairs;
   for (const double gap_s : kGaps_s)
@@ -139,7 +139,7 @@ ClockOffset findClockOffset(const std::vector<FrameTracks>& frames, const ImuBat
   ClockOffset found;
   if (imu.size() < 2) return found;
   const GyroPath path(imu);
-  const std::vector<TimedPair> pairs = makePairs(frames, path, rig);
+  const std::vector<TimedPair> pairs = timedPairs(frames, path, rig);
   if (pairs.size() < kLeastPairs) return found;
   const double focal = rig.camera.meanFocal(), width_rad = kWidth_px / focal;
   Fit fit(pairs, path, width_rad);

@@ -23,7 +23,7 @@ std::vector<std::map<TrackId, Eigen::Vector3d>> raysInBody(const SlidingWindow& 
   return rays;
 }
 
-std::vector<FramePair> makePairs(const SlidingWindow& window) {
+std::vector<FramePair> windowPairs(const SlidingWindow& window) {
   const auto rays = raysInBody(window);
   std::vector<FramePair> pairs;
   const std::size_t n = window.frames.size();
@@ -48,7 +48,7 @@ std::vector<FramePair> makePairs(const SlidingWindow& window) {
 GyroAlignment alignGyro(const SlidingWindow& window) {
   constexpr double kWidth_rad = 0.004;  // about two pixels of EuRoC's camera
   GyroAlignment result;
-  const std::vector<FramePair> pairs = makePairs(window);
+  const std::vector<FramePair> pairs = windowPairs(window);
   if (pairs.size() < 5) return result;
   for (int iteration = 0; iteration < 15; ++iteration) {
     const EpipolarSystem system = epipolarSystem(pairs, result.bias_gyro, kWidth_rad);
