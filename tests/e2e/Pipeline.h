@@ -40,7 +40,7 @@ class Pipeline : public ::testing::Test {
     fs::remove_all(folder_);
     fs::create_directories(folder_);
     sim_exit_ = run("lintel-sim", "--scene room --duration 12 --seed 3 -o " + shellWord(recording()));
-    if (sim_exit_ == 0) vio_exit_ = runVio(recording(), "out");
+    if (sim_exit_ == 0) vio_exit_ = runVio(recording(), "out", "--threads 2");
   }
 
   void SetUp() override {
