@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "lintel/geometry/Rotation.h"
 
-#include <algorithm>
 #include <cmath>
 
 namespace lintel {
@@ -57,10 +56,10 @@ Eigen::Quaterniond rotationBetween(const Eigen::Vector3d& from, const Eigen::Vec
   const double cosine = b.dot(a);
   Eigen::Quaterniond q;
   if (cosine < -1 + 1e-12) {
-    const double w2 = 0.5 * (1 + std::max(cosine, -1.0)), sine = axis.norm();
-    q.vec() =
-        (sine > 1e-9 ? Eigen::Vector3d(axis / sine) : Eigen::Vector3d(tangentBasis(a).col(0))) * std::sqrt(1 - w2);
-    q.w() = std::sqrt(w2);
+    const double sine = axis.norm(), cosine_of_half = 0.5 * sine;
+    q.vec() = sine > 1e-9 ? Eigen::Vector3d(axis / sine) : Eigen::Vector3d(tangentBasis(a).col(0));
+    q.vec() *= std::sqrt(1 - cosine_of_half * cosine_of_half);
+    q.w() = cosine_of_half;
   } else {
     const double s = std::sqrt((1 + cosine) * 2);
     q.vec() = axis * (1 / s);
