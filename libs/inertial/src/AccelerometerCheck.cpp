@@ -2,6 +2,7 @@
 #include "lintel/inertial/AccelerometerCheck.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdio>
 
@@ -17,20 +18,37 @@ constexpr std::int64_t kMean_ns = 500'000'000, kSpan_ns = 5'000'000'000, kLarges
 // Bias and scale error of cheap sensors reach 0.5 m/s^2, changes of speed within a second 1 m/s.
 constexpr double kSizeTolerance = 0.2;  // of gravity
 constexpr double kLeastGravity = 0.5;   // m/s^2: less is noise and motion alone
+constexpr double kSilent = 1e-3;        // m/s^2: less than any accelerometer's noise
+constexpr double kTurned_rad = 1;       // by which gravity must have moved in the sensor's axes
 // Squared deviations with the right axes come from motion; with wrong ones a tilt of 10 degrees adds 3 (m/s^2)^2.
 constexpr double kClearlyBetter = 1.5;
 constexpr int kLeastCompared = 20;
 
-/// A way in which the axes may be mixed up: axis i of the body shows what the file's column `column[i]` has. Without
-/// changes of sign: one of a single axis is hard to see, and all three together not at all.
+/// A way in which the axes may be mixed up: axis i of the body shows sign[i] times what the file's column[i] has. All
+/// signs changed is the same again.
 struct Axes {
-  int column[3];
+  std::array<int, 3> column;
+  std::array<int, 3> sign;
 };
-constexpr Axes kAssignments[] = {{{0, 1, 2}}, {{0, 2, 1}}, {{1, 0, 2}}, {{2, 1, 0}}, {{1, 2, 0}}, {{2, 0, 1}}};
+
+std::vector<Axes> allAxes() {
+  std::vector<Axes> all;
+  std::array<int, 3> column{0, 1, 2};
+  do {
+    for (const std::array<int, 3> sign : {std::array<int, 3>{1, 1, 1}, {1, 1, -1}, {1, -1, 1}, {-1, 1, 1}})
+      all.push_back({column, sign});
+  } while (std::next_permutation(column.begin(), column.end()));
+  return all;  // the first is as it should be
+}
+
+const std::vector<Axes>& assignments() {
+  static const std::vector<Axes> all = allAxes();
+  return all;
+}
 
 }  // namespace
 
-AccelerometerCheck::AccelerometerCheck() : misfits_(std::size(kAssignments), 0.0) {}
+AccelerometerCheck::AccelerometerCheck() : misfits_(assignments().size(), 0.0) {}
 
 void AccelerometerCheck::add(const ImuBatch& batch, const Eigen::Vector3d& bias_gyro) {
   for (const ImuSample& sample : batch) {
@@ -45,6 +63,10 @@ void AccelerometerCheck::add(const ImuBatch& batch, const Eigen::Vector3d& bias_
       R_ = (R_ * expRotation((sample.gyro - bias_gyro) * 1e-9 * static_cast<double>(sample.t_ns - last_ns_)))
                .normalized();
     }
+    if (last_ns_ != 0)
+      turned_rad_ += (sample.gyro - bias_gyro).norm() * 1e-9 * static_cast<double>(sample.t_ns - last_ns_);
+    lowest_ = lowest_.cwiseMin(sample.accel);
+    highest_ = highest_.cwiseMax(sample.accel);
     last_ns_ = sample.t_ns;
     const Eigen::Matrix3d R = R_.toRotationMatrix();
     sum_ += Eigen::Map<const Eigen::Matrix<double, 9, 1>>(R.data()) * sample.accel.transpose();
@@ -67,11 +89,12 @@ void AccelerometerCheck::closeMean() {
 
 void AccelerometerCheck::closeSpan() {
   for (std::size_t k = 0; k < misfits_.size(); ++k) {
-    const int* column = kAssignments[k].column;
+    const auto& [column, sign] = assignments()[k];
     std::vector<Eigen::Vector3d> turned;
     Eigen::Vector3d mean = Eigen::Vector3d::Zero();
     for (const auto& m : means_) {
-      turned.emplace_back(m.block<3, 1>(0, column[0]) + m.block<3, 1>(3, column[1]) + m.block<3, 1>(6, column[2]));
+      turned.emplace_back(sign[0] * m.block<3, 1>(0, column[0]) + sign[1] * m.block<3, 1>(3, column[1]) +
+                          sign[2] * m.block<3, 1>(6, column[2]));
       mean += turned.back() / static_cast<double>(means_.size());
     }
     for (const Eigen::Vector3d& f : turned) misfits_[k] += (f - mean).squaredNorm();
@@ -89,6 +112,8 @@ double AccelerometerCheck::gravity() const {
 
 std::string AccelerometerCheck::sizeFault() const {
   if (sizes_.empty()) return {};
+  if ((highest_ - lowest_).maxCoeff() < kSilent && turned_rad_ > kTurned_rad)
+    return "the accelerometer's values do not change although the IMU turns: check that they are recorded";
   const double seen = gravity();
   if (std::abs(seen / kGravity - 1) < kSizeTolerance) return {};
   char text[200];
@@ -103,14 +128,18 @@ std::string AccelerometerCheck::sizeFault() const {
   return fault;
 }
 
+double AccelerometerCheck::axesMisfit() const {
+  if (compared_ < kLeastCompared) return 1;
+  const double best = *std::min_element(misfits_.begin(), misfits_.end());
+  return best > 0 ? misfits_[0] / best : 1;
+}
+
 std::string AccelerometerCheck::axesFault() const {
-  if (compared_ < kLeastCompared) return {};
-  const auto best = std::min_element(misfits_.begin(), misfits_.end());
-  if (!(misfits_[0] > kClearlyBetter * *best)) return {};
-  const int* column = kAssignments[best - misfits_.begin()].column;
-  const char* names = "xyz";
+  if (!(axesMisfit() > kClearlyBetter)) return {};
+  const auto& [column, sign] =
+      assignments()[static_cast<std::size_t>(std::min_element(misfits_.begin(), misfits_.end()) - misfits_.begin())];
   std::string order;
-  for (int i = 0; i < 3; ++i) order += (i ? ", " : "") + std::string(1, names[column[i]]);
+  for (std::size_t i = 0; i < 3; ++i) order += std::string(i ? ", " : "") + (sign[i] < 0 ? "-" : "") + "xyz"[column[i]];
   return "the accelerometer's axes do not turn with the gyroscope's: x, y, z seem to be its columns " + order;
 }
 

@@ -36,6 +36,7 @@ TEST(AccelerometerCheck, NothingIsWrongWithAGoodOne) {
   const AccelerometerCheck check = checkOf([](const Eigen::Vector3d& f) { return f; });
   EXPECT_NEAR(check.gravity(), 9.81, 0.1);
   EXPECT_EQ(check.sizeFault(), "");
+  EXPECT_EQ(check.axesMisfit(), 1);
   EXPECT_EQ(check.axesFault(), "");
 }
 
@@ -53,6 +54,19 @@ TEST(AccelerometerCheck, InterchangedAxesAreNamed) {
       checkOf([](const Eigen::Vector3d& f) { return Eigen::Vector3d(f.x(), f.z(), f.y()); });
   EXPECT_EQ(check.sizeFault(), "");
   EXPECT_NE(check.axesFault().find("x, z, y"), std::string::npos) << check.axesFault();
+}
+
+TEST(AccelerometerCheck, AWrongSignIsNamed) {
+  const AccelerometerCheck check =
+      checkOf([](const Eigen::Vector3d& f) { return Eigen::Vector3d(f.x(), f.y(), -f.z()); });
+  EXPECT_EQ(check.sizeFault(), "");
+  EXPECT_GT(check.axesMisfit(), 5);
+  EXPECT_NE(check.axesFault().find("x, y, -z"), std::string::npos) << check.axesFault();
+}
+
+TEST(AccelerometerCheck, ValuesThatNeverChangeAreNamed) {
+  const auto constant = [](const Eigen::Vector3d&) { return Eigen::Vector3d(0, 0, 9.81); };
+  EXPECT_NE(checkOf(constant).sizeFault().find("do not change"), std::string::npos);
 }
 
 TEST(AccelerometerCheck, SaysNothingWithoutData) {

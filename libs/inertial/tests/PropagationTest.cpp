@@ -38,5 +38,24 @@ TEST(Propagation, ABodyThatFallsFollowsTheParabola) {
   EXPECT_LT((to.v_w_b - gravityW()).norm(), 1e-9);
 }
 
+TEST(Propagation, MisfitIsMeasuredByTheCovariance) {
+  const Preintegration imu = constantReadings(Eigen::Vector3d::Zero(), -gravityW(), {});
+  const InertialState from, there = propagated(from, imu);
+  EXPECT_NEAR(squaredMisfit(from, there, imu), 0, 1e-9);
+  InertialState off = there;
+  const double sigma =
+      2e-3;  // of a second of ImuNoise's accelerometer [m/s]; position follows as far as it is correlated
+  off.v_w_b.y() += sigma;
+  off.T_w_b.p.y() += 0.5 * sigma;
+  const double expected = squaredMisfit(from, off, imu);
+  EXPECT_NEAR(expected, 1, 0.1) << "one standard deviation";
+  off.v_w_b.y() += sigma;
+  off.T_w_b.p.y() += 0.5 * sigma;
+  EXPECT_NEAR(squaredMisfit(from, off, imu), 4 * expected, 1e-6);
+  off = there;
+  off.T_w_b.q = off.T_w_b.q * expRotation({0, 0, 3 * 1.6968e-4});  // about the vertical: it turns no acceleration
+  EXPECT_NEAR(squaredMisfit(from, off, imu), 9, 0.1);
+}
+
 }  // namespace
 }  // namespace lintel

@@ -2,10 +2,7 @@
 #include "ClockSearch.h"
 
 #include <cmath>
-#include <optional>
 #include <vector>
-
-#include "lintel/tracking/FrontEnd.h"
 
 namespace lintel {
 
@@ -19,31 +16,20 @@ constexpr double kSignificant = 4;            // standard deviations
 
 }  // namespace
 
-ClockSearch searchClock(Recording& recording, const FrontEndParams& tracking) {
-  FrontEndParams points = tracking;
-  points.features = "points";
-  FrontEnd front_end(recording.rig(), points);
+ClockSearch searchClock(TrackingStage& tracking, const Rig& rig) {
   ClockSearch search;
-  std::vector<FrameTracks> frames;
+  std::vector<FrameTracks> tracks;
   ImuBatch imu;
   double next_try_s = kFirstTry_s;
-  const auto read = [&]() -> std::optional<FrameWithImu> {
-    try {
-      return recording.next();
-    } catch (const RecordingError&) {
-      search.fault = std::current_exception();
-      return std::nullopt;
-    }
-  };
-  while (auto step = read()) {
-    frames.push_back(front_end.process(step->frame, step->imu));
-    for (const ImuSample& sample : step->imu)
+  while (auto frame = tracking.next()) {
+    tracks.push_back({frame->tracks.t_ns, frame->tracks.points, {}});
+    for (const ImuSample& sample : frame->step.imu)
       if (imu.empty() || sample.t_ns > imu.back().t_ns) imu.push_back(sample);
-    search.read.push_back(std::move(*step));
-    const double t_s = 1e-9 * static_cast<double>(frames.back().t_ns - frames.front().t_ns);
+    search.frames.push_back(std::move(*frame));
+    const double t_s = 1e-9 * static_cast<double>(tracks.back().t_ns - tracks.front().t_ns);
     if (t_s < next_try_s) continue;
     next_try_s += kTryEvery_s;
-    const ClockOffset clock = findClockOffset(frames, imu, recording.rig());
+    const ClockOffset clock = findClockOffset(tracks, imu, rig);
     if (clock.determined && (!search.clock.determined || clock.sigma_s < search.clock.sigma_s)) search.clock = clock;
     if (t_s >= kLongest_s || (search.clock.determined && search.clock.sigma_s < kGoodSigma_s)) break;
   }

@@ -2,24 +2,22 @@
 #pragma once
 
 #include <deque>
-#include <exception>
 
+#include "TrackingStage.h"
+#include "lintel/core/Rig.h"
 #include "lintel/estimator/ClockOffset.h"
-#include "lintel/sensing/Recording.h"
-#include "lintel/tracking/FrontEndParams.h"
 
 namespace lintel {
 
-/// The beginning of a recording, read to find the clock offset of images and IMU.
+/// What the beginning of a recording says about the clocks of images and IMU.
 struct ClockSearch {
-  std::deque<FrameWithImu> read;  ///< to be processed still
-  std::exception_ptr fault;       ///< why it could not be read on
-  ClockOffset clock;              ///< the best determined one
+  std::deque<TrackedFrame> frames;  ///< that the search has taken from tracking
+  ClockOffset clock;                ///< the best determined one
   double offset_s = 0;  ///< to correct the stamps by; 0 where the images' stamps are good to some milliseconds
 };
 
-/// Follows points through the first seconds until the offset is determined, at most five seconds. Offsets that the
+/// Looks at the tracks of the first seconds until the offset is determined, at most five seconds. Offsets that the
 /// estimator finds by itself, from its first frames on, are left to it.
-ClockSearch searchClock(Recording& recording, const FrontEndParams& tracking);
+ClockSearch searchClock(TrackingStage& tracking, const Rig& rig);
 
 }  // namespace lintel

@@ -3,9 +3,12 @@
 
 #include <algorithm>
 #include <cstdio>
+#include <deque>
 #include <exception>
+#include <optional>
 #include <stdexcept>
 #include <thread>
+#include <utility>
 
 #include "ClockSearch.h"
 #include "EstimationStage.h"
@@ -51,6 +54,35 @@ void trackOnItsOwnThread(TrackingStage& tracking, const FrameTaker& take) {
   if (failure) std::rethrow_exception(failure);
 }
 
+/// Tracking of a recording whose clocks have been compared. The frames that this took are tracked anew where stamps had
+/// to be corrected, and only handed on where they are good.
+class Tracking {
+ public:
+  Tracking(Recording& recording, const FrontEndParams& params, OdometryResult& result)
+      : stage_(std::in_place, recording, params, result), search_(searchClock(*stage_, recording.rig())) {
+    if (search_.offset_s == 0) {
+      stage_->giveAgain(std::move(search_.frames));
+      return;
+    }
+    std::deque<FrameWithImu> read;
+    for (TrackedFrame& frame : search_.frames) read.push_back(std::move(frame.step));
+    std::exception_ptr fault;
+    if (!result.error.empty()) fault = std::make_exception_ptr(RecordingError(result.error));
+    shifted_.emplace(recording, std::move(read), search_.offset_s, fault);
+    result.error.clear();
+    result.statistics.decoding = result.statistics.tracking = StageClock();
+    stage_.emplace(*shifted_, params, result);
+  }
+
+  TrackingStage& stage() { return *stage_; }
+  const ClockSearch& search() const { return search_; }
+
+ private:
+  std::optional<ShiftedRecording> shifted_;
+  std::optional<TrackingStage> stage_;
+  ClockSearch search_;
+};
+
 /// The configuration, the time offset only as well known as the search has found it.
 Configuration withClock(Configuration configuration, const ClockSearch& search) {
   double& sigma_s = configuration.estimator.calibration.time_offset_sigma_s;
@@ -80,17 +112,17 @@ OdometryResult runOdometry(Recording& recording, const Configuration& configurat
   const auto cancelled = [&] {
     return result.cancelled = result.cancelled || (options.cancelled && options.cancelled());
   };
-  ClockSearch search = searchClock(recording, configuration.tracking);
-  ShiftedRecording prepared(recording, std::move(search.read), search.offset_s, search.fault);
+  Tracking prepared(recording, configuration.tracking, result);
+  const ClockSearch& search = prepared.search();
+  TrackingStage& tracking = prepared.stage();
   const Configuration used = withClock(configuration, search);
-  TrackingStage tracking(prepared, used.tracking, result);
   EstimationStage estimation(recording.rig(), used, result);
-  RunCheck check(recording.rig());
+  RunCheck check(recording.rig(), search.offset_s);
   const std::size_t expected_frames = recording.expectedFrames();
   const FrameTaker take = [&](const TrackedFrame& frame) {
     if (cancelled()) return false;
     const WindowUpdate update = estimation.process(frame);
-    check.add(frame.step.imu, update);
+    check.add(frame, update);
     const std::size_t done = result.statistics.frames;
     if (options.progress) options.progress({RunStage::kFrames, done, expected_frames});
     if (options.observer) options.observer(frame.step.frame, frame.tracks, update, done);
@@ -106,6 +138,7 @@ OdometryResult runOdometry(Recording& recording, const Configuration& configurat
   addClock(search, result);
   if (const std::string noise = check.noiseRemark(); !noise.empty())
     result.remarks.push_back("noise of the IMU: " + noise);
+  result.evidence = check.evidence();
   result.verdict = check.verdict(result.statistics);
   return result;
 }

@@ -3,6 +3,8 @@
 
 #include <cstdio>
 
+#include "lintel/core/Quantiles.h"
+
 namespace lintel {
 
 namespace {
@@ -11,15 +13,32 @@ namespace {
 // against the estimate's, or an accelerometer that is not what it is taken for, makes it seem so.
 constexpr std::int64_t kSpan_ns = 5'000'000'000;
 constexpr double kLargestAcceleration = 3;  // [m/s^2]
+constexpr double kLongLever_m = 2;          // longer than what holds a camera and its IMU
 constexpr double kLeastShareWithPose = 0.5;
 
 }  // namespace
 
-void RunCheck::add(const ImuBatch& imu, const WindowUpdate& update) {
+void RunCheck::add(const TrackedFrame& frame, const WindowUpdate& update) {
+  const ImuBatch& imu = frame.step.imu;
+  turns_.add(imu, frame.turn);
+  images_.add(frame.step);
   if (update.status == EstimatorStatus::kTracking) bias_gyro_ = update.bias.gyro;
   accelerometer_.add(imu, bias_gyro_);
   noise_.add(imu);
   watchSpeed(update);
+  watchImu(update);
+}
+
+void RunCheck::watchImu(const WindowUpdate& update) {
+  if (update.status == EstimatorStatus::kTracking) {
+    biases_gyro_.push_back(update.bias.gyro.norm());
+    biases_accel_.push_back(update.bias.accel.norm());
+  }
+  for (const RetiredKeyframe& keyframe : update.keyframes) {
+    const InertialState state{keyframe.T_w_b, keyframe.v_w_b, keyframe.bias};
+    if (keyframe_ && keyframe.imu) imu_misfits_.push_back(squaredMisfit(*keyframe_, state, *keyframe.imu));
+    keyframe_ = state;
+  }
 }
 
 void RunCheck::watchSpeed(const WindowUpdate& update) {
@@ -33,25 +52,75 @@ void RunCheck::watchSpeed(const WindowUpdate& update) {
   speeds_.pop_front();
 }
 
-std::string RunCheck::verdict(const OdometryStatistics& s) const {
-  std::string fault = accelerometer_.sizeFault();
-  if (!fault.empty()) return fault;
+std::map<std::string, double> RunCheck::evidence() const {
+  std::map<std::string, double> values{{"gravity_m_s2", accelerometer_.gravity()}};
+  const TurnFit turns = turns_.fit();
+  values["turns_compared"] = turns.compared;
+  values["turns_missed"] = turns.missed;
+  for (int i = 0; i < 3; ++i)
+    for (int k = 0; k < 3; ++k) {
+      const std::string at = std::string(1, "xyz"[i]) + "xyz"[k];
+      values["turns_" + at] = turns.M(i, k);
+      values["turns_" + at + "_sigma"] = turns.sigma(i, k);
+    }
+  values["accelerometer_axes_misfit"] = accelerometer_.axesMisfit();
+  values["largest_acceleration_m_s2"] = largest_acceleration_;
+  values["images_blank"] = images_.blankShare();
+  values["images_repeated"] = images_.repeatedShare();
+  const auto quantiles = [&](const std::string& name, std::vector<double> sample) {
+    if (sample.empty()) return;
+    values[name + "_median"] = upperQuantile(sample, 0.5);
+    values[name + "_90"] = upperQuantile(sample, 0.9);
+  };
+  quantiles("imu_misfit", imu_misfits_);
+  quantiles("bias_gyro", biases_gyro_);
+  quantiles("bias_accel", biases_accel_);
+  return values;
+}
+
+std::string RunCheck::symptom(const OdometryStatistics& s) const {
   char text[200];
   const double after_first = static_cast<double>(s.last_frame_ns - s.first_frame_ns) * 1e-9 - s.first_pose_s;
   const double all = static_cast<double>(s.last_frame_ns - s.first_frame_ns) * 1e-9;
   const double expected = s.first_pose_s < 0 || all <= 0 ? 0 : static_cast<double>(s.frames) * after_first / all;
   if (!(largest_acceleration_ < kLargestAcceleration)) {
     std::snprintf(text, sizeof text, "the estimate diverged: it gained %.0f m/s within 5 s", 5 * largest_acceleration_);
-    fault = text;
-  } else if (s.resets > 0 && static_cast<double>(s.frames_with_pose) < kLeastShareWithPose * expected) {
+    return text;
+  }
+  if (s.resets > 0 && static_cast<double>(s.frames_with_pose) < kLeastShareWithPose * expected) {
     std::snprintf(text, sizeof text, "the estimate did not last: %zu starts, poses for %.0f %% of the frames",
                   s.resets + 1, 100 * static_cast<double>(s.frames_with_pose) / static_cast<double>(s.frames));
-    fault = text;
+    return text;
   }
+  return {};
+}
+
+std::string RunCheck::cause() const {
+  if (const std::string fault = images_.fault(); !fault.empty()) return fault;
+  if (const std::string fault = accelerometer_.axesFault(); !fault.empty()) return fault;
+  if (const double lever_m = rig_.T_b_c.p.norm(); lever_m > kLongLever_m) {
+    char text[120];
+    std::snprintf(text, sizeof text, "T_BS says that the camera is %.1f m away from the IMU: check its unit (m)",
+                  lever_m);
+    return text;
+  }
+  if (turns_.agree())
+    return "camera and gyroscope turn together, so look at the accelerometer (its sign: at rest it shows 9.8 m/s^2 "
+           "upwards; axes, unit), the distance in T_BS, the focal length and the distortion";
+  return {};
+}
+
+std::string RunCheck::verdict(const OdometryStatistics& s) const {
+  // The gyroscope first: what the accelerometer shows is turned by it.
+  if (const std::string fault = turns_.fault(clock_offset_s_); !fault.empty())
+    return images_.fault().empty() ? fault : images_.fault() + "; " + fault;
+  if (const std::string fault = accelerometer_.sizeFault(); !fault.empty()) return fault;
+  const std::string likely = cause();
+  if (s.frames_with_pose == 0) return likely.empty() ? likely : "no pose was found (" + s.last_wait + "); " + likely;
+  const std::string fault = symptom(s);
   if (fault.empty()) return fault;
-  const std::string axes = accelerometer_.axesFault();
-  return fault + (axes.empty() ? "; check that IMU and images belong together, T_BS of both, and the calibration"
-                               : "; " + axes);
+  return fault + "; " +
+         (likely.empty() ? "check that IMU and images belong together, T_BS of both, and the calibration" : likely);
 }
 
 }  // namespace lintel

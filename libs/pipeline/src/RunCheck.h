@@ -2,11 +2,18 @@
 #pragma once
 
 #include <deque>
+#include <map>
+#include <optional>
 #include <string>
+#include <vector>
 
+#include "ImageCheck.h"
+#include "TrackingStage.h"
 #include "lintel/core/Rig.h"
 #include "lintel/inertial/AccelerometerCheck.h"
 #include "lintel/inertial/NoiseMeter.h"
+#include "lintel/inertial/Propagation.h"
+#include "lintel/inertial/TurnCheck.h"
 #include "lintel/pipeline/Odometry.h"
 
 namespace lintel {
@@ -14,10 +21,15 @@ namespace lintel {
 /// Looks for contradictions in a run, while it goes on.
 class RunCheck {
  public:
-  explicit RunCheck(const Rig& rig) : rig_(rig) {}
+  /// `clock_offset_s`: by which the stamps have been corrected.
+  explicit RunCheck(const Rig& rig, double clock_offset_s = 0)
+      : rig_(rig), clock_offset_s_(clock_offset_s), turns_(rig.T_b_c.q) {}
 
-  /// A frame's IMU and what the estimator made of it.
-  void add(const ImuBatch& imu, const WindowUpdate& update);
+  /// A frame, as tracked, and what the estimator made of it.
+  void add(const TrackedFrame& frame, const WindowUpdate& update);
+
+  /// What the checks have measured, by name.
+  std::map<std::string, double> evidence() const;
 
   /// Why the trajectory must not be trusted, with the likely cause; empty when nothing contradicts it.
   std::string verdict(const OdometryStatistics& statistics) const;
@@ -32,10 +44,19 @@ class RunCheck {
   };
 
   void watchSpeed(const WindowUpdate& update);
+  void watchImu(const WindowUpdate& update);
+  std::string symptom(const OdometryStatistics& statistics) const;  ///< of an estimate that is wrong
+  std::string cause() const;                                        ///< what may be behind it; empty: unknown
 
   Rig rig_;
+  double clock_offset_s_;
   AccelerometerCheck accelerometer_;
   NoiseMeter noise_;
+  TurnCheck turns_;
+  ImageCheck images_;
+  std::optional<InertialState> keyframe_;  ///< the last one that has left the window
+  std::vector<double> imu_misfits_;        ///< squared, of nine degrees of freedom, between keyframes
+  std::vector<double> biases_gyro_, biases_accel_;
   Eigen::Vector3d bias_gyro_ = Eigen::Vector3d::Zero();
   std::deque<Speed> speeds_;         ///< of the last seconds, without a reset in between
   double largest_acceleration_ = 0;  ///< that lasted as long [m/s^2]

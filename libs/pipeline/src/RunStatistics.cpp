@@ -138,6 +138,7 @@ std::string statisticsJson(const OdometryResult& result, const Rig& given, const
                   {"stages", stagesJson(s)},
                   {"tracking", trackingJson(s.front_end)},
                   {"warnings", warnings},
+                  {"checks", result.evidence},
                   {"not_to_be_trusted", result.verdict},
                   {"ended_early", result.error}};
   return json.dump(2) + "\n";

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <deque>
 #include <optional>
+#include <utility>
 
 #include "lintel/pipeline/Odometry.h"
 #include "lintel/tracking/FrontEnd.h"
@@ -12,6 +14,7 @@ namespace lintel {
 struct TrackedFrame {
   FrameWithImu step;
   FrameTracks tracks;
+  CameraTurn turn;  ///< since the frame before
 };
 
 /// Reads the recording and tracks points and lines. Of the result it writes only what the other stage does not touch
@@ -24,6 +27,13 @@ class TrackingStage {
   /// Empty at the end of the recording; a fault ends it with `error` set.
   std::optional<TrackedFrame> next() {
     TrackedFrame frame;
+    if (!again_.empty()) {
+      frame = std::move(again_.front());
+      again_.pop_front();
+      return frame;
+    }
+    if (ended_) return std::nullopt;
+    ended_ = true;  // unless there is a frame
     try {
       auto step = recording_.next();
       if (!step) return std::nullopt;
@@ -35,8 +45,13 @@ class TrackingStage {
     }
     const StageClock::Scope scope(result_.statistics.tracking);
     frame.tracks = front_end_.process(frame.step.frame, frame.step.imu);
+    frame.turn = front_end_.turn();
+    ended_ = false;
     return frame;
   }
+
+  /// Frames that next() has given: it gives them once more, before those that follow.
+  void giveAgain(std::deque<TrackedFrame> frames) { again_ = std::move(frames); }
 
   const FrontEndStatistics& statistics() const { return front_end_.statistics(); }
 
@@ -44,6 +59,8 @@ class TrackingStage {
   Recording& recording_;
   FrontEnd front_end_;
   OdometryResult& result_;
+  std::deque<TrackedFrame> again_;
+  bool ended_ = false;
 };
 
 }  // namespace lintel

@@ -4,6 +4,8 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <memory>
+#include <vector>
 
 namespace lintel {
 namespace {
@@ -12,11 +14,14 @@ namespace {
 std::string verdictOf(double gravity, double acceleration, std::size_t resets = 0, double share_with_pose = 1) {
   RunCheck check{Rig{}};
   OdometryStatistics statistics;
+  const auto image = std::make_shared<GrayImage>(GrayImage{64, 64, std::vector<std::uint8_t>(64 * 64, 100)});
   std::int64_t t_ns = 1'000'000'000;
   statistics.first_frame_ns = t_ns;
   statistics.first_pose_s = 0;
   for (int frame = 0; frame < 100; ++frame) {
-    ImuBatch imu;
+    TrackedFrame tracked;
+    tracked.step.frame.image = image;
+    ImuBatch& imu = tracked.step.imu;
     for (int i = 0; i <= 20; ++i) {
       ImuSample sample;
       sample.t_ns = t_ns + 5'000'000 * i;
@@ -28,7 +33,7 @@ std::string verdictOf(double gravity, double acceleration, std::size_t resets = 
     update.t_ns = t_ns;
     update.status = EstimatorStatus::kTracking;
     update.v_w_b.x() = acceleration * 0.1 * frame;
-    check.add(imu, update);
+    check.add(tracked, update);
     ++statistics.frames;
   }
   statistics.last_frame_ns = t_ns;

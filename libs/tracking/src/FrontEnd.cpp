@@ -56,6 +56,8 @@ struct FrontEnd::Impl {
     if (statistics.frames > 0 && !gyro.predict(imu_since_last, 1e-9 * static_cast<double>(frame.t_ns - last_t_ns)))
       ++statistics.frames_without_gyro;
     points.process(pyramid, gyro, statistics);
+    turn = points.turn().value_or(CameraTurn());
+    if (points.turn()) turn.from_ns = last_t_ns, turn.to_ns = frame.t_ns;
     if (lines) lines->process(pyramid, gyro, points.motion(), statistics);
   }
 
@@ -65,6 +67,7 @@ struct FrontEnd::Impl {
   PointTracker points;
   std::unique_ptr<LineTracker> lines;  ///< null: points only
   FrontEndStatistics statistics;
+  CameraTurn turn;
   std::int64_t last_t_ns = 0;
 };
 
@@ -95,6 +98,7 @@ FrameTracks FrontEnd::process(const Frame& frame, const ImuBatch& imu_since_last
   return tracks;
 }
 
+CameraTurn FrontEnd::turn() const { return impl_->turn; }
 const FrontEndStatistics& FrontEnd::statistics() const { return impl_->statistics; }
 
 }  // namespace lintel

@@ -52,6 +52,7 @@ std::vector<cv::Point2f> PointTracker::pixels() const {
 
 void PointTracker::process(const ImagePyramid& pyramid, GyroPrediction& gyro, FrontEndStatistics& statistics) {
   flow_.clear();
+  turn_.reset();
   if (pyramid.hasPrevious() && !points_.empty()) {
     StageTimer timer(statistics, "points_klt");
     Followed followed = follow(pyramid, gyro, statistics.points);
@@ -156,6 +157,7 @@ void PointTracker::rejectByEpipolarGeometry(Followed& followed, GyroPrediction& 
     pairs.push_back({points_[i].normalised, camera_.normalise({followed.px[i].x, followed.px[i].y})});
     index.push_back(i);
   }
+  turn_ = turnOfPoints(pairs, camera_.meanFocal());  // before the gyroscope chooses among them
   const TwoViewMotion motion =
       twoViewMotion(pairs, gyro.R_c1_c0(), gyro.information(), twoViewParams(camera_, params_.epipolar_px));
   for (std::size_t k = 0; k < index.size(); ++k)

@@ -12,6 +12,7 @@
 #include "ImagePyramid.h"
 #include "PatchAnchors.h"
 #include "PatchFlow.h"
+#include "PointsTurn.h"
 #include "StepTranslation.h"
 #include "TwoViewMotion.h"
 #include "lintel/core/FrameTracks.h"
@@ -46,6 +47,9 @@ class PointTracker {
   const std::vector<PointObservation>& points() const { return points_; }
   PointMotion motion() const { return {flow_, step_}; }
 
+  /// How the camera turned since the frame before, by the points alone; without times.
+  const std::optional<CameraTurn>& turn() const { return turn_; }
+
  private:
   enum class Outcome : char { kTracked, kLost, kNotReturned };
   struct Followed {
@@ -75,6 +79,7 @@ class PointTracker {
   std::vector<PointObservation> points_;
   std::vector<PointFlow> flow_;
   StepTranslation step_;
+  std::optional<CameraTurn> turn_;
   std::map<TrackId, cv::Point2f> residuals_;  ///< of the last step
   TrackId next_id_ = 1;
   int frames_since_detection_ = 0;

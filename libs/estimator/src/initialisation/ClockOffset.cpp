@@ -8,8 +8,8 @@
 #include <map>
 
 #include "initialisation/EpipolarRotation.h"
-#include "lintel/geometry/Rotation.h"
 #include "lintel/geometry/SmallMatrices.h"
+#include "lintel/inertial/GyroPath.h"
 
 namespace lintel {
 
@@ -22,45 +22,6 @@ constexpr std::size_t kMostRays = 30;      // of a pair
 constexpr std::size_t kLeastRays = 12;
 constexpr std::size_t kLeastPairs = 10;
 constexpr double kGaps_s[] = {0.1, 0.3};  // between the frames of a pair
-constexpr double kLargestImuGap_s = 0.05;
-
-/// Rotation of the body since the first sample, at any time.
-class GyroPath {
- public:
-  explicit GyroPath(const ImuBatch& imu) : imu_(imu) {
-    R_.push_back(Eigen::Quaterniond::Identity());
-    gaps_.push_back(0);
-    for (std::size_t i = 1; i < imu.size(); ++i) {
-      const double dt = 1e-9 * static_cast<double>(imu[i].t_ns - imu[i - 1].t_ns);
-      R_.push_back((R_.back() * expRotation(0.5 * (imu[i].gyro + imu[i - 1].gyro) * dt)).normalized());
-      gaps_.push_back(gaps_.back() + (dt > kLargestImuGap_s));
-    }
-  }
-
-  bool covers(std::int64_t from_ns, std::int64_t to_ns) const {
-    if (imu_.empty() || from_ns < imu_.front().t_ns || to_ns > imu_.back().t_ns) return false;
-    return gaps_[after(to_ns)] == gaps_[after(from_ns)];
-  }
-
-  Eigen::Quaterniond at(std::int64_t t_ns) const {
-    const std::size_t k = after(t_ns);
-    if (k == 0) return R_.front();
-    const double dt = 1e-9 * static_cast<double>(t_ns - imu_[k - 1].t_ns);
-    return R_[k - 1] * expRotation(0.5 * (imu_[k].gyro + imu_[k - 1].gyro) * dt);
-  }
-
- private:
-  /// The first sample not before a time.
-  std::size_t after(std::int64_t t_ns) const {
-    const auto it = std::lower_bound(imu_.begin(), imu_.end(), t_ns,
-                                     [](const ImuSample& sample, std::int64_t t) { return sample.t_ns < t; });
-    return std::min<std::size_t>(static_cast<std::size_t>(it - imu_.begin()), imu_.size() - 1);
-  }
-
-  const ImuBatch& imu_;
-  std::vector<Eigen::Quaterniond> R_;
-  std::vector<int> gaps_;
-};
 
 std::int64_t nanoseconds(double seconds) { return std::llround(1e9 * seconds); }
 

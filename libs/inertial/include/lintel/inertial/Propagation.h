@@ -19,4 +19,8 @@ struct InertialState {
 /// [Forster2017, eq. 26]; the biases stay.
 InertialState propagated(const InertialState& from, const Preintegration& imu);
 
+/// How far a state is from where the samples lead to from another one, in pose and velocity, measured by the covariance
+/// of the interval: a chi-square with nine degrees of freedom where both states are right.
+double squaredMisfit(const InertialState& from, const InertialState& to, const Preintegration& imu);
+
 }  // namespace lintel

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <functional>
+#include <map>
 #include <string>
 #include <vector>
 
@@ -47,8 +48,9 @@ struct OdometryResult {
   CalibrationEstimate window_calibration;  ///< as the last window had it, before any batch refinement
   double time_offset_s = 0;
   OdometryStatistics statistics;
-  std::vector<std::string> remarks;  ///< what was corrected of the recording's own data, in words
-  std::string verdict;               ///< why trajectory and map are probably wrong; empty when no check fails
+  std::vector<std::string> remarks;        ///< what was corrected of the recording's own data, in words
+  std::map<std::string, double> evidence;  ///< what the checks of the run have measured, by name
+  std::string verdict;                     ///< why trajectory and map are probably wrong; empty when no check fails
   bool cancelled =
       false;          ///< RunOptions::cancelled ended the run: trajectory and map are those of the frames until then
   std::string error;  ///< why the recording ended early; empty when it was read to its end or cancelled

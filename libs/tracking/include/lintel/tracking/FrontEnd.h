@@ -3,6 +3,7 @@
 
 #include <memory>
 
+#include "lintel/core/CameraTurn.h"
 #include "lintel/core/Frame.h"
 #include "lintel/core/FrameTracks.h"
 #include "lintel/core/Rig.h"
@@ -27,6 +28,10 @@ class FrontEnd {
   /// it is empty the last rotation rate is assumed to go on. Throws std::invalid_argument when the image does not have
   /// the rig's size, or the frame is not later than the one before.
   FrameTracks process(const Frame& frame, const ImuBatch& imu_since_last);
+
+  /// How the camera turned from the frame before the last one to the last one, by its points alone; unknown where too
+  /// few say the same.
+  CameraTurn turn() const;
 
   const FrontEndStatistics& statistics() const;
 

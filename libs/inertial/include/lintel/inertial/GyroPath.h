@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <Eigen/Geometry>
+#include <cstdint>
+#include <vector>
+
+#include "lintel/core/Frame.h"
+
+namespace lintel {
+
+/// How an IMU turned since its first sample, by its gyroscope alone, at any time in between. The samples ascend in time
+/// and must outlive it.
+class GyroPath {
+ public:
+  explicit GyroPath(const ImuBatch& imu);
+
+  /// Whether there are samples from one time to another, without a gap of more than 50 ms.
+  bool covers(std::int64_t from_ns, std::int64_t to_ns) const;
+
+  /// Rotation from the body at a time within the samples to the body at the first one.
+  Eigen::Quaterniond at(std::int64_t t_ns) const;
+
+ private:
+  std::size_t firstNotBefore(std::int64_t t_ns) const;
+
+  const ImuBatch& imu_;
+  std::vector<Eigen::Quaterniond> R_b0_bk_;
+  std::vector<int> gaps_;  ///< how many there are before a sample
+};
+
+}  // namespace lintel

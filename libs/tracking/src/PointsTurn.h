@@ -1,0 +1,17 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "TwoViewMotion.h"
+#include "lintel/core/CameraTurn.h"
+
+namespace lintel {
+
+/// Rotation between two views from points alone, whatever a gyroscope says; without times. Begins with the rotation
+/// that explains most of the points' motion when nothing is translated. Empty when there are fewer than 15 pairs, or
+/// half of them fit no common motion.
+std::optional<CameraTurn> turnOfPoints(const std::vector<TwoViewPair>& pairs, double focal_px);
+
+}  // namespace lintel
