@@ -25,6 +25,7 @@ constexpr double kSilent_rad_s = 1e-3;     // less than any gyroscope's noise: v
 // What is visible is at least four standard deviations: noise leaves a sixth of it open at most (median, 0.67 / 4), and
 // two things that have nothing to do with one another all of it.
 constexpr double kNoiseMisses = 0.17, kLargestMissed = 0.5;
+constexpr double kUnrelatedMisses = 0.8;  // of turns that have nothing in common it is 1
 constexpr double kClearlyLess = 0.5;
 constexpr double kSearchedBefore_s = 0.1;  // by ClockOffset, before the start
 constexpr double kLongestSearch_s = 10, kShareOfSpan = 0.5, kSearchStep_s = 0.04;
@@ -137,18 +138,20 @@ TurnFit TurnCheck::bestFit() const {
 
 bool TurnCheck::agree() const {
   const TurnFit here = fit();
-  return tells(here) && here.missed < kLargestMissed && fault().empty();
+  return tells(here) && here.missed < kLargestMissed && fault(Suspicion::kSome).empty();
 }
 
-std::string TurnCheck::fault(double corrected_s) const {
+std::string TurnCheck::fault(Suspicion suspicion, double corrected_s) const {
   const TurnFit here = fit();
   if (!tells(here)) return {};
   if (gyroIsSilent())
     return "the gyroscope shows no turn at all while the images turn: check that its values are recorded";
-  if (here.missed < kNoiseMisses) return faultOf(here, R_b_c_);
+  if (here.missed < kNoiseMisses) return faultOf(here, R_b_c_, suspicion);
   const TurnFit best = bestFit();
-  const bool clocks = std::abs(best.offset_s) > kSearchedBefore_s && best.missed < kClearlyLess * here.missed;
-  if (!clocks && here.missed < kLargestMissed) return faultOf(here, R_b_c_);
+  const bool alone = suspicion == Suspicion::kNone;
+  const bool clocks = std::abs(best.offset_s) > kSearchedBefore_s && best.missed < kClearlyLess * here.missed &&
+                      (!alone || here.missed > kLargestMissed);
+  if (!clocks && here.missed < (alone ? kUnrelatedMisses : kLargestMissed)) return faultOf(here, R_b_c_, suspicion);
   char text[300];
   if (!clocks || best.missed > kLargestMissed) {
     std::snprintf(
@@ -161,7 +164,7 @@ std::string TurnCheck::fault(double corrected_s) const {
   std::snprintf(text, sizeof text,
                 "the clocks of images and IMU differ: an image with stamp t shows the world at t %+.2f s of the IMU",
                 best.offset_s + corrected_s);
-  const std::string more = faultOf(best, R_b_c_);
+  const std::string more = faultOf(best, R_b_c_, suspicion);
   return text + (more.empty() ? "" : "; " + more);
 }
 

@@ -15,11 +15,12 @@ namespace lintel {
 namespace {
 
 constexpr double kDegrees = 180 / 3.14159265358979323846;
-constexpr double kLargestSigma = 0.1;     // of an entry of M: 6 degrees, 10 %
-constexpr double kSignificant = 4;        // standard deviations
-constexpr double kLargestTurned_deg = 5;  // a calibration that is only roughly known is off by 3
-constexpr double kSameTurn_deg = 15;      // two rotations that mean the same cause
-constexpr double kLargestScale = 1.15;    // a focal length that is only roughly known is off by 2 %, a gyroscope by 3 %
+constexpr double kLargestSigma = 0.1;         // of an entry of M: 6 degrees, 10 %
+constexpr double kSignificant = 4;            // standard deviations
+constexpr double kLargestTurned_deg = 5;      // a calibration that is only roughly known is off by 3
+constexpr double kMountedOtherwise_deg = 20;  // beyond any calibration, and any error of the images' turns
+constexpr double kSameTurn_deg = 15;          // two rotations that mean the same cause
+constexpr double kLargestScale = 1.15;  // a focal length that is only roughly known is off by 2 %, a gyroscope by 3 %
 
 double degreesBetween(const Eigen::Matrix3d& A, const Eigen::Matrix3d& B) {
   return kDegrees * Eigen::AngleAxisd(A.transpose() * B).angle();
@@ -98,7 +99,7 @@ std::string rotationFault(const Eigen::Matrix3d& Q, const Eigen::Matrix3d& R) {
 
 }  // namespace
 
-std::string faultOf(const TurnFit& fit, const Eigen::Quaterniond& R_b_c) {
+std::string faultOf(const TurnFit& fit, const Eigen::Quaterniond& R_b_c, Suspicion suspicion) {
   Eigen::Matrix3d M = fit.M;
   const double sigma = fit.sigma.maxCoeff();
   if (!(sigma < kLargestSigma * std::max(M.norm(), 1e-3))) return {};
@@ -113,7 +114,9 @@ std::string faultOf(const TurnFit& fit, const Eigen::Quaterniond& R_b_c) {
     return "the gyroscope's axes are left-handed: two of them are interchanged or a sign is wrong" +
            (columns.empty() ? "" : "; x, y, z seem to be its columns " + columns);
   }
-  if (kDegrees * (Eigen::AngleAxisd(Q).angle() - kSignificant * sigma) > kLargestTurned_deg) return rotationFault(Q, R);
+  const double largest_deg = suspicion == Suspicion::kNone ? kMountedOtherwise_deg : kLargestTurned_deg;
+  if (kDegrees * (Eigen::AngleAxisd(Q).angle() - kSignificant * sigma) > largest_deg) return rotationFault(Q, R);
+  if (suspicion == Suspicion::kNone) return {};
   const double focal = std::sqrt(std::abs(gain.x() * gain.y())) / gain.z();
   if (std::abs(std::log(focal)) > std::log(kLargestScale) + kSignificant * sigma) {
     char text[300];

@@ -88,46 +88,49 @@ TEST(TurnCheck, AGoodFlightFitsWithTheIdentity) {
   EXPECT_LT(fit.missed, 0.05);
   EXPECT_LT((fit.M - Eigen::Matrix3d::Identity()).norm(), 0.02) << fit.M;
   EXPECT_LT(fit.sigma.maxCoeff(), 0.01);
-  EXPECT_EQ(check.fault(), "");
+  EXPECT_EQ(check.fault(Suspicion::kSome), "");
 }
 
 TEST(TurnCheck, ARoughCalibrationIsNoFault) {
-  EXPECT_EQ(checkOf(calibrated(kR_b_c * about(Eigen::Vector3d(1, 1, 0).normalized(), 3))).fault(), "");
-  EXPECT_EQ(checkOf(withImages(0.95, 0.95, 1)).fault(), "");
+  EXPECT_EQ(checkOf(calibrated(kR_b_c * about(Eigen::Vector3d(1, 1, 0).normalized(), 3))).fault(Suspicion::kSome), "");
+  EXPECT_EQ(checkOf(withImages(0.95, 0.95, 1)).fault(Suspicion::kSome), "");
 }
 
 TEST(TurnCheck, ACameraThatIsMountedOtherwiseIsNamed) {
-  EXPECT_THAT(checkOf(calibrated(kR_b_c * about(Eigen::Vector3d::UnitZ(), 90))).fault(),
+  EXPECT_THAT(checkOf(calibrated(kR_b_c * about(Eigen::Vector3d::UnitZ(), 90))).fault(Suspicion::kSome),
               AllOf(HasSubstr("about 90 degrees about its viewing axis"), HasSubstr("T_BS")));
-  EXPECT_THAT(checkOf(calibrated(kR_b_c * about(Eigen::Vector3d::UnitX(), 20))).fault(),
+  EXPECT_THAT(checkOf(calibrated(kR_b_c * about(Eigen::Vector3d::UnitX(), 20))).fault(Suspicion::kSome),
               AllOf(HasSubstr("about 20 degrees about its x axis"), HasSubstr("T_BS")));
-  EXPECT_THAT(checkOf(calibrated(kR_b_c.conjugate())).fault(), HasSubstr("inverse"));
+  EXPECT_THAT(checkOf(calibrated(kR_b_c.conjugate())).fault(Suspicion::kSome), HasSubstr("inverse"));
 }
 
 TEST(TurnCheck, MirroredImagesAreNamed) {
-  EXPECT_THAT(checkOf(withImages(1, -1, -1)).fault(), HasSubstr("mirrored left-right"));
-  EXPECT_THAT(checkOf(withImages(-1, 1, -1)).fault(), HasSubstr("mirrored top-bottom"));
-  EXPECT_THAT(checkOf(withImages(-1, -1, 1)).fault(), HasSubstr("upside down"));
+  EXPECT_THAT(checkOf(withImages(1, -1, -1)).fault(Suspicion::kSome), HasSubstr("mirrored left-right"));
+  EXPECT_THAT(checkOf(withImages(-1, 1, -1)).fault(Suspicion::kSome), HasSubstr("mirrored top-bottom"));
+  EXPECT_THAT(checkOf(withImages(-1, -1, 1)).fault(Suspicion::kSome), HasSubstr("upside down"));
 }
 
 TEST(TurnCheck, AxesOfTheGyroscopeAreNamed) {
   Eigen::Matrix3d swapped, turned;
   swapped << 1, 0, 0, 0, 0, 1, 0, 1, 0;
   turned << 0, 1, 0, 0, 0, 1, 1, 0, 0;  // the file's x is the true y, …
-  EXPECT_THAT(checkOf(withGyro(swapped)).fault(), AllOf(HasSubstr("left-handed"), HasSubstr("columns x, z, y")));
-  EXPECT_THAT(checkOf(withGyro(Eigen::Vector3d(1, -1, 1).asDiagonal())).fault(), HasSubstr("columns x, -y, z"));
-  EXPECT_THAT(checkOf(withGyro(turned)).fault(), HasSubstr("columns z, x, y"));
+  EXPECT_THAT(checkOf(withGyro(swapped)).fault(Suspicion::kSome),
+              AllOf(HasSubstr("left-handed"), HasSubstr("columns x, z, y")));
+  EXPECT_THAT(checkOf(withGyro(Eigen::Vector3d(1, -1, 1).asDiagonal())).fault(Suspicion::kSome),
+              HasSubstr("columns x, -y, z"));
+  EXPECT_THAT(checkOf(withGyro(turned)).fault(Suspicion::kSome), HasSubstr("columns z, x, y"));
 }
 
 TEST(TurnCheck, UnitsAndFocalLengthAreNamed) {
-  EXPECT_THAT(checkOf(withGyro(57.29578 * Eigen::Matrix3d::Identity())).fault(), HasSubstr("degrees/s"));
-  EXPECT_THAT(checkOf(withGyro(3 * Eigen::Matrix3d::Identity())).fault(), HasSubstr("unit"));
-  EXPECT_THAT(checkOf(withImages(1 / 1.3, 1 / 1.3, 1)).fault(), HasSubstr("30 % too long"));
-  EXPECT_THAT(checkOf(withImages(1.3, 1.3, 1)).fault(), HasSubstr("too short"));
+  EXPECT_THAT(checkOf(withGyro(57.29578 * Eigen::Matrix3d::Identity())).fault(Suspicion::kSome),
+              HasSubstr("degrees/s"));
+  EXPECT_THAT(checkOf(withGyro(3 * Eigen::Matrix3d::Identity())).fault(Suspicion::kSome), HasSubstr("unit"));
+  EXPECT_THAT(checkOf(withImages(1 / 1.3, 1 / 1.3, 1)).fault(Suspicion::kSome), HasSubstr("30 % too long"));
+  EXPECT_THAT(checkOf(withImages(1.3, 1.3, 1)).fault(Suspicion::kSome), HasSubstr("too short"));
 }
 
 TEST(TurnCheck, AGyroscopeWithoutTurnsIsNamed) {
-  EXPECT_THAT(checkOf(withGyro(Eigen::Matrix3d::Zero())).fault(), HasSubstr("no turn at all"));
+  EXPECT_THAT(checkOf(withGyro(Eigen::Matrix3d::Zero())).fault(Suspicion::kSome), HasSubstr("no turn at all"));
 }
 
 TEST(TurnCheck, ClocksThatDifferAreFound) {
@@ -136,7 +139,7 @@ TEST(TurnCheck, ClocksThatDifferAreFound) {
     flight.clock_s = clock_s;
     const TurnCheck check = checkOf(flight);
     EXPECT_NEAR(check.bestFit().offset_s, -clock_s, 0.03);
-    EXPECT_THAT(check.fault(), HasSubstr("clocks")) << clock_s;
+    EXPECT_THAT(check.fault(Suspicion::kSome), HasSubstr("clocks")) << clock_s;
   }
 }
 
@@ -144,14 +147,23 @@ TEST(TurnCheck, AnotherFlightIsNamed) {
   Flight flight;
   flight.imu_time = 0.5;
   flight.clock_s = 40;
-  EXPECT_THAT(checkOf(flight).fault(), HasSubstr("do not turn together"));
+  EXPECT_THAT(checkOf(flight).fault(Suspicion::kSome), HasSubstr("do not turn together"));
 }
 
 TEST(TurnCheck, NothingIsSaidWithoutTurns) {
   Flight flight = withGyro(-Eigen::Matrix3d::Identity());
   flight.rate = 0.005;
-  EXPECT_EQ(checkOf(flight).fault(), "");
-  EXPECT_EQ(TurnCheck(kR_b_c).fault(), "");
+  EXPECT_EQ(checkOf(flight).fault(Suspicion::kSome), "");
+  EXPECT_EQ(TurnCheck(kR_b_c).fault(Suspicion::kSome), "");
+}
+
+TEST(TurnCheck, WithoutSuspicionOnlyWhatNoRunSurvivesIsAFault) {
+  EXPECT_EQ(checkOf(withImages(1 / 1.3, 1 / 1.3, 1)).fault(Suspicion::kNone), "");
+  EXPECT_EQ(checkOf(calibrated(kR_b_c * about(Eigen::Vector3d::UnitX(), 12))).fault(Suspicion::kNone), "");
+  EXPECT_THAT(checkOf(calibrated(kR_b_c * about(Eigen::Vector3d::UnitX(), 12))).fault(Suspicion::kSome),
+              HasSubstr("turned by about 12"));
+  EXPECT_THAT(checkOf(calibrated(kR_b_c * about(Eigen::Vector3d::UnitZ(), 90))).fault(Suspicion::kNone),
+              HasSubstr("turned by about 90"));
 }
 
 }  // namespace

@@ -97,6 +97,7 @@ std::string RunCheck::symptom(const OdometryStatistics& s) const {
 
 std::string RunCheck::cause() const {
   if (const std::string fault = images_.fault(); !fault.empty()) return fault;
+  if (const std::string fault = turns_.fault(Suspicion::kSome, clock_offset_s_); !fault.empty()) return fault;
   if (const std::string fault = accelerometer_.axesFault(); !fault.empty()) return fault;
   if (const double lever_m = rig_.T_b_c.p.norm(); lever_m > kLongLever_m) {
     char text[120];
@@ -112,7 +113,7 @@ std::string RunCheck::cause() const {
 
 std::string RunCheck::verdict(const OdometryStatistics& s) const {
   // The gyroscope first: what the accelerometer shows is turned by it.
-  if (const std::string fault = turns_.fault(clock_offset_s_); !fault.empty())
+  if (const std::string fault = turns_.fault(Suspicion::kNone, clock_offset_s_); !fault.empty())
     return images_.fault().empty() ? fault : images_.fault() + "; " + fault;
   if (const std::string fault = accelerometer_.sizeFault(); !fault.empty()) return fault;
   const std::string likely = cause();

@@ -23,6 +23,12 @@ struct TurnFit {
   Eigen::Matrix3d sigma = Eigen::Matrix3d::Zero();  ///< standard deviations of M's entries
 };
 
+/// What else speaks against a run.
+enum class Suspicion {
+  kNone,  ///< nothing: only what no run survives is a fault
+  kSome,  ///< the run has failed: smaller contradictions may be why
+};
+
 class GyroPath;
 
 /// Compares how the camera turns with how the gyroscope turns. The images' turns must not depend on the gyroscope.
@@ -43,7 +49,7 @@ class TurnCheck {
 
   /// What is wrong, in words, with the likely cause; empty when nothing is, or nothing can be said. `corrected_s`: by
   /// which offset of the clocks the stamps have been corrected already.
-  std::string fault(double corrected_s = 0) const;
+  std::string fault(Suspicion suspicion, double corrected_s = 0) const;
 
  private:
   bool gyroIsSilent() const;
