@@ -139,7 +139,7 @@ OdometryResult runOdometry(Recording& recording, const Configuration& configurat
   if (const std::string noise = check.noiseRemark(); !noise.empty())
     result.remarks.push_back("noise of the IMU: " + noise);
   result.evidence = check.evidence();
-  result.verdict = check.verdict(result.statistics);
+  result.verdict = check.verdict(result.statistics, result.rig);
   return result;
 }
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "RunCheck.h"
 
+#include <cmath>
 #include <cstdio>
 
 #include "lintel/core/Quantiles.h"
@@ -15,6 +16,25 @@ constexpr std::int64_t kSpan_ns = 5'000'000'000;
 constexpr double kLargestAcceleration = 3;  // [m/s^2]
 constexpr double kLongLever_m = 2;          // longer than what holds a camera and its IMU
 constexpr double kLeastShareWithPose = 0.5;
+
+// How far the estimated calibration may go from the given one: some times what a rough calibration is wrong by (focal
+// length 2 %, mounting 3 degrees). Farther away it takes up errors that are not the camera's, or the camera is another.
+constexpr double kLargestFocalChange = 0.05, kLargestDistortionChange = 0.05, kLargestTurn_rad = 0.12;
+
+std::string calibrationFault(const Rig& given, const Rig& estimated) {
+  const double focal = estimated.camera.meanFocal() / given.camera.meanFocal() - 1;
+  const double k1 = estimated.camera.k1 - given.camera.k1;
+  const double turn_rad = given.T_b_c.q.angularDistance(estimated.T_b_c.q);
+  if (std::abs(focal) <= kLargestFocalChange && std::abs(k1) <= kLargestDistortionChange &&
+      turn_rad <= kLargestTurn_rad)
+    return {};
+  char text[200];
+  std::snprintf(
+      text, sizeof text,
+      "the estimate left the given calibration: focal length %+.0f %%, k1 %+.2f, mounting turned by %.0f degrees",
+      100 * focal, k1, turn_rad * 57.29577951);
+  return text;
+}
 
 }  // namespace
 
@@ -78,7 +98,7 @@ std::map<std::string, double> RunCheck::evidence() const {
   return values;
 }
 
-std::string RunCheck::symptom(const OdometryStatistics& s) const {
+std::string RunCheck::symptom(const OdometryStatistics& s, const Rig& estimated) const {
   char text[200];
   const double after_first = static_cast<double>(s.last_frame_ns - s.first_frame_ns) * 1e-9 - s.first_pose_s;
   const double all = static_cast<double>(s.last_frame_ns - s.first_frame_ns) * 1e-9;
@@ -92,7 +112,7 @@ std::string RunCheck::symptom(const OdometryStatistics& s) const {
                   s.resets + 1, 100 * static_cast<double>(s.frames_with_pose) / static_cast<double>(s.frames));
     return text;
   }
-  return {};
+  return calibrationFault(rig_, estimated);
 }
 
 std::string RunCheck::cause() const {
@@ -111,14 +131,14 @@ std::string RunCheck::cause() const {
   return {};
 }
 
-std::string RunCheck::verdict(const OdometryStatistics& s) const {
+std::string RunCheck::verdict(const OdometryStatistics& s, const Rig& estimated) const {
   // The gyroscope first: what the accelerometer shows is turned by it.
   if (const std::string fault = turns_.fault(Suspicion::kNone, clock_offset_s_); !fault.empty())
     return images_.fault().empty() ? fault : images_.fault() + "; " + fault;
   if (const std::string fault = accelerometer_.sizeFault(); !fault.empty()) return fault;
   const std::string likely = cause();
   if (s.frames_with_pose == 0) return likely.empty() ? likely : "no pose was found (" + s.last_wait + "); " + likely;
-  const std::string fault = symptom(s);
+  const std::string fault = symptom(s, estimated);
   if (fault.empty()) return fault;
   return fault + "; " +
          (likely.empty() ? "check that IMU and images belong together, T_BS of both, and the calibration" : likely);

@@ -31,8 +31,9 @@ class RunCheck {
   /// What the checks have measured, by name.
   std::map<std::string, double> evidence() const;
 
-  /// Why the trajectory must not be trusted, with the likely cause; empty when nothing contradicts it.
-  std::string verdict(const OdometryStatistics& statistics) const;
+  /// Why the trajectory must not be trusted, with the likely cause; empty when nothing contradicts it. `estimated`: the
+  /// rig as the run has refined it.
+  std::string verdict(const OdometryStatistics& statistics, const Rig& estimated) const;
 
   /// What of the IMU's noise densities was not believed, in words; empty when all were.
   std::string noiseRemark() const { return lintel::noiseRemark(rig_.imu_noise, noise_); }
@@ -45,8 +46,9 @@ class RunCheck {
 
   void watchSpeed(const WindowUpdate& update);
   void watchImu(const WindowUpdate& update);
-  std::string symptom(const OdometryStatistics& statistics) const;  ///< of an estimate that is wrong
-  std::string cause() const;                                        ///< what may be behind it; empty: unknown
+  /// Of an estimate that is wrong; empty: none.
+  std::string symptom(const OdometryStatistics& statistics, const Rig& estimated) const;
+  std::string cause() const;  ///< what may be behind it; empty: unknown
 
   Rig rig_;
   double clock_offset_s_;

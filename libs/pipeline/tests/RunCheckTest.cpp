@@ -10,9 +10,17 @@
 namespace lintel {
 namespace {
 
+Rig givenRig() {
+  Rig rig;
+  rig.camera.fx = rig.camera.fy = 458;
+  rig.camera.k1 = -0.28;
+  return rig;
+}
+
 /// Ten seconds at 10 Hz; the estimate gains speed steadily, the accelerometer shows `gravity`.
-std::string verdictOf(double gravity, double acceleration, std::size_t resets = 0, double share_with_pose = 1) {
-  RunCheck check{Rig{}};
+std::string verdictOf(double gravity, double acceleration, std::size_t resets = 0, double share_with_pose = 1,
+                      const Rig& estimated = givenRig()) {
+  RunCheck check{givenRig()};
   OdometryStatistics statistics;
   const auto image = std::make_shared<GrayImage>(GrayImage{64, 64, std::vector<std::uint8_t>(64 * 64, 100)});
   std::int64_t t_ns = 1'000'000'000;
@@ -39,7 +47,7 @@ std::string verdictOf(double gravity, double acceleration, std::size_t resets = 
   statistics.last_frame_ns = t_ns;
   statistics.resets = resets;
   statistics.frames_with_pose = static_cast<std::size_t>(share_with_pose * 100);
-  return check.verdict(statistics);
+  return check.verdict(statistics, estimated);
 }
 
 TEST(RunCheck, AGoodRunHasNoVerdict) {
@@ -55,6 +63,18 @@ TEST(RunCheck, AWrongGravityIsNamedFirst) {
 TEST(RunCheck, ADivergedRunIsNoGoodOne) {
   EXPECT_NE(verdictOf(9.81, 8).find("diverged"), std::string::npos) << verdictOf(9.81, 8);
   EXPECT_NE(verdictOf(9.81, std::nan("")), "");
+}
+
+TEST(RunCheck, ACalibrationThatTheEstimateLeft) {
+  Rig estimated = givenRig();
+  estimated.camera.fx = estimated.camera.fy = 458 * 1.02;  // a roughly known one
+  estimated.camera.k1 = -0.26;
+  EXPECT_EQ(verdictOf(9.81, 0, 0, 1, estimated), "");
+  estimated.camera.fx = estimated.camera.fy = 458 * 0.88;
+  EXPECT_NE(verdictOf(9.81, 0, 0, 1, estimated).find("focal length -12 %"), std::string::npos);
+  estimated = givenRig();
+  estimated.camera.k1 = 0.1;
+  EXPECT_NE(verdictOf(9.81, 0, 0, 1, estimated).find("k1 +0.38"), std::string::npos);
 }
 
 TEST(RunCheck, StartsThatDoNotLast) { EXPECT_NE(verdictOf(9.81, 0, 2, 0.2).find("did not last"), std::string::npos); }
