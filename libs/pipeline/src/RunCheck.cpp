@@ -19,7 +19,7 @@ constexpr double kLeastShareWithPose = 0.5;
 
 // How far the estimated calibration may go from the given one: some times what a rough calibration is wrong by (focal
 // length 2 %, mounting 3 degrees). Farther away it takes up errors that are not the camera's, or the camera is another.
-constexpr double kLargestFocalChange = 0.05, kLargestDistortionChange = 0.05, kLargestTurn_rad = 0.12;
+constexpr double kLargestFocalChange = 0.05, kLargestDistortionChange = 0.04, kLargestTurn_rad = 0.12;
 
 std::string calibrationFault(const Rig& given, const Rig& estimated) {
   const double focal = estimated.camera.meanFocal() / given.camera.meanFocal() - 1;
