@@ -9,6 +9,7 @@
 namespace lintel {
 namespace {
 
+using ::testing::ContainsRegex;
 using ::testing::HasSubstr;
 using ::testing::StartsWith;
 
@@ -77,7 +78,9 @@ TEST_F(Pipeline, ACameraThatIsTurned) {
   out << text.substr(end);
   out.close();
   EXPECT_EQ(run("lintel-vio", partOf(copy)), 1);
-  EXPECT_THAT(complaintIn(bytesOf(folder_ / "lintel-vio.err")), HasSubstr("about 90 degrees about its viewing axis"));
+  // the fit knows the angle to some degrees
+  EXPECT_THAT(complaintIn(bytesOf(folder_ / "lintel-vio.err")),
+              ContainsRegex("turned by about (8[4-9]|9[0-6]) degrees about its viewing axis"));
 }
 
 TEST_F(Pipeline, AnAccelerometerInG) {
