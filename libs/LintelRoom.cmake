@@ -27,10 +27,8 @@ function(lintel_precompile TARGET FIRST)
   target_compile_options(${TARGET} PRIVATE $<$<CXX_COMPILER_ID:GNU>:-fpch-preprocess>)
 endfunction()
 
-# Four sources at a time: templates that they share are instantiated once. Rooms whose tests are compiled one by one
-# are in LINTEL_SINGLE_TESTS.
+# Four sources at a time: templates that they share are instantiated once.
 option(LINTEL_UNITY "Build faster by compiling sources of a room together" OFF)
-set(LINTEL_SINGLE_TESTS exporting estimator factors pipeline)
 
 # lintel_unity(TARGET): TARGET is compiled so, if LINTEL_UNITY says it.
 function(lintel_unity TARGET)
@@ -86,9 +84,7 @@ function(lintel_room NAME)
 
   if(BUILD_TESTING AND ARG_TESTS)
     lintel_test_executable(${NAME}_tests ${ARG_TESTS})
-    if(NOT NAME IN_LIST LINTEL_SINGLE_TESTS)
-      lintel_unity(${NAME}_tests)
-    endif()
+    lintel_unity(${NAME}_tests)
     target_include_directories(${NAME}_tests PRIVATE ${CMAKE_CURRENT_SOURCE_DIR}/src ${CMAKE_CURRENT_SOURCE_DIR}/tests)
     target_link_libraries(${NAME}_tests PRIVATE lintel::${NAME} lintel_testing ${ARG_TEST_LINKS})
     gtest_discover_tests(${NAME}_tests DISCOVERY_MODE PRE_TEST TEST_PREFIX ${NAME}. PROPERTIES LABELS unit TIMEOUT 300)

@@ -10,6 +10,7 @@
 #include "landmarks/LineTriangulation.h"
 #include "landmarks/ParallelGroups.h"
 #include "landmarks/PointTriangulation.h"
+#include "lintel/estimator/StatePriors.h"
 #include "lintel/geometry/Rotation.h"
 #include "lintel/inertial/NoiseMeter.h"
 #include "lintel/inertial/Propagation.h"
@@ -52,7 +53,7 @@ InertialState stateOf(const WindowFrame& frame) {
 class Estimator::Impl {
  public:
   Impl(const Rig& rig, const EstimatorParams& params)
-      : rig_(rig), params_(scaledTo(rig.camera, params)), initializer_(params_, rig.T_b_c), window_(rig) {}
+      : rig_(rig), params_(paramsFor(rig.camera, params)), initializer_(params_, rig.T_b_c), window_(rig) {}
 
   WindowUpdate process(const FrameTracks& tracks, const ImuBatch& imu);
   WindowUpdate finish();
@@ -217,6 +218,7 @@ void Estimator::Impl::track(WindowUpdate& update) {
 }
 
 void Estimator::Impl::solve(WindowUpdate& update) {
+  window_.relinearise();
   triangulatePoints(window_, params_.landmarks, params_.factors.point_sigma_px);
   triangulateLines(window_, params_);
   if (params_.degeneracy.lines == "constrain") groupParallelLines(window_, params_);

@@ -78,7 +78,7 @@ struct FlownLines {
   double position_error_m = 0;
 };
 
-TrackedFlight flight(const std::vector<Segment3>& lines_w, std::uint64_t seed = 1) {
+TrackedFlight straightFlight(const std::vector<Segment3>& lines_w, std::uint64_t seed = 1) {
   TrackSimulationParams tracks;
   tracks.seed = seed;
   tracks.duration_s = 8;
@@ -90,7 +90,7 @@ TrackedFlight flight(const std::vector<Segment3>& lines_w, std::uint64_t seed = 
   return fly(ImuSimulatorParams{}, tracks, StraightFlight());
 }
 
-FlownLines fly(const TrackedFlight& flight, const std::string& degenerate_lines) {
+FlownLines flown(const TrackedFlight& flight, const std::string& degenerate_lines) {
   EstimatorParams params;
   params.degeneracy.lines = degenerate_lines;
   params.calibration.refine_camera = params.calibration.refine_extrinsics = params.calibration.refine_time_offset =
@@ -125,10 +125,10 @@ double angle_deg(const RetiredLine& line, const TrackedFlight& flight) {
 }
 
 TEST(DegenerateScenes, RailsAlongTheMotionGetTheirDirection) {
-  const TrackedFlight rails_only = flight(rails());
+  const TrackedFlight rails_only = straightFlight(rails());
   const auto errors = [&](const std::string& mode) {
     std::vector<double> result;
-    for (const auto& [id, line] : fly(rails_only, mode).retired)
+    for (const auto& [id, line] : flown(rails_only, mode).retired)
       if (mode != "constrain" || line.group != 0) result.push_back(angle_deg(line, rails_only));
     return result;
   };
@@ -146,8 +146,8 @@ TEST(DegenerateScenes, PolesAndStrutsAmongRailsAreNotBent) {
   std::vector<Segment3> lines = rails();
   const std::size_t first_pole = lines.size();
   for (const Segment3& pole : polesAndStruts()) lines.push_back(pole);
-  const TrackedFlight mixed = flight(lines);
-  const FlownLines drop = fly(mixed, "drop"), constrain = fly(mixed, "constrain");
+  const TrackedFlight mixed = straightFlight(lines);
+  const FlownLines drop = flown(mixed, "drop"), constrain = flown(mixed, "constrain");
   int compared = 0, rails_tied = 0;
   for (const auto& [id, line] : constrain.retired) {
     const bool is_pole = mixed.sim.line_of_track[id] >= first_pole;
@@ -172,15 +172,15 @@ TEST(DegenerateScenes, PolesAndStrutsAmongRailsCostNoAccuracy) {
   double log_ratio = 0;
   constexpr int kSeeds = 4;  // a single flight's error changes by a tenth with any rounding
   for (std::uint64_t seed = 1; seed <= kSeeds; ++seed) {
-    const TrackedFlight mixed = flight(lines, seed);
-    log_ratio += std::log(fly(mixed, "constrain").position_error_m / fly(mixed, "drop").position_error_m) / kSeeds;
+    const TrackedFlight mixed = straightFlight(lines, seed);
+    log_ratio += std::log(flown(mixed, "constrain").position_error_m / flown(mixed, "drop").position_error_m) / kSeeds;
   }
   EXPECT_LT(std::exp(log_ratio), 1.05);
 }
 
 TEST(DegenerateScenes, WithPolesAndStrutsAloneNothingIsTied) {
-  const TrackedFlight poles = flight(polesAndStruts());
-  for (const auto& [id, line] : fly(poles, "constrain").retired)
+  const TrackedFlight poles = straightFlight(polesAndStruts());
+  for (const auto& [id, line] : flown(poles, "constrain").retired)
     EXPECT_TRUE(line.group == 0 || angle_deg(line, poles) < 1) << "track " << id;
 }
 

@@ -106,6 +106,39 @@ TEST(Estimator, FollowsANoisyFlight) {
   }
 }
 
+/// The flight as a front end sees it that was told another rig.
+TrackedFlight toldAnotherRig(TrackedFlight flight, const Rig& told) {
+  for (SimulatedFrame& frame : flight.sim.frames) {
+    for (PointObservation& o : frame.tracks.points) o.normalised = told.camera.normalise(o.px);
+    for (LineObservation& o : frame.tracks.lines) {
+      o.start = told.camera.normalise(o.start_px);
+      o.end = told.camera.normalise(o.end_px);
+    }
+  }
+  flight.rig = told;
+  return flight;
+}
+
+TEST(Estimator, FindsTheCalibrationFromARoughOne) {
+  const TrackedFlight flight = fly(ImuSimulatorParams{}, tracksFor(10, 0.5));
+  Rig rough = flight.rig;
+  rough.camera.fx *= 1.02;
+  rough.camera.fy *= 1.02;
+  rough.camera.k1 = rough.camera.k2 = rough.camera.p1 = rough.camera.p2 = 0;
+  rough.T_b_c.q = rough.T_b_c.q * expRotation(Eigen::Vector3d(0.03, -0.03, 0.03));
+  rough.T_b_c.p += Eigen::Vector3d(0.02, -0.01, 0.02);
+  const TrackedFlight told = toldAnotherRig(flight, rough);
+  Estimator estimator(rough, {});
+  std::vector<WindowUpdate> updates;
+  for (const SimulatedFrame& frame : told.sim.frames) updates.push_back(estimator.process(frame.tracks, frame.imu));
+  EXPECT_EQ(lostOf(updates), 0);
+  EXPECT_LT(positionError(updates, flight), 0.1);
+  const CalibrationEstimate found = estimator.calibration();
+  EXPECT_NEAR(found.camera.meanFocal(), flight.rig.camera.meanFocal(), 2);
+  EXPECT_NEAR(found.camera.k1, flight.rig.camera.k1, 0.01);
+  EXPECT_LT(found.T_b_c.q.angularDistance(flight.rig.T_b_c.q), 0.005);
+}
+
 TEST(Estimator, LinesDoNotMakeItWorse) {
   double with = 0, without = 0;
   for (const std::uint64_t seed : {2u, 3u, 4u, 5u}) {
@@ -193,6 +226,20 @@ TEST(Estimator, TwoRunsGiveTheSameBits) {
     for (std::size_t i = 0; i < a[k].lines.size(); ++i) ASSERT_EQ(a[k].lines[i].line_w.n, b[k].lines[i].line_w.n);
   }
   EXPECT_GT(posesOf(a), 30);
+}
+
+TEST(Estimator, AShortDropOutOfTheImuIsBridged) {
+  TrackedFlight flight = fly(ImuSimulatorParams{}, tracksFor(6, 0.3));
+  const std::size_t from = 60, to = 68;  // 0.4 s
+  const ImuSample a = flight.sim.frames[from].imu.front(), b = flight.sim.frames[to - 1].imu.back();
+  for (std::size_t k = from; k < to; ++k)
+    for (ImuSample& sample : flight.sim.frames[k].imu) {
+      const double s = static_cast<double>(sample.t_ns - a.t_ns) / static_cast<double>(b.t_ns - a.t_ns);
+      sample = {sample.t_ns, a.gyro + s * (b.gyro - a.gyro), a.accel + s * (b.accel - a.accel), true};
+    }
+  const auto updates = run(flight);
+  EXPECT_EQ(lostOf(updates), 0);
+  EXPECT_LT(positionError(updates, flight), 0.05);
 }
 
 TEST(Estimator, AnImuGapIsAFailureAndItStartsAgainWhereItWas) {

@@ -30,7 +30,7 @@ Eigen::Vector2d pixelOf(const SlidingWindow& window, FrameId id, const Eigen::Ve
 }
 
 NormalisedObservation observed(const SlidingWindow& window, const Eigen::Vector2d& px) {
-  return makeObservation(window.camera(), window.camera().normalise(px));
+  return makeObservation(window.camera(), px);
 }
 
 }  // namespace
@@ -51,8 +51,7 @@ void seeLine(SlidingWindow& window, TrackId id, FrameId frame, const Segment3& s
   track.id = id;
   LineSighting sighting;
   sighting.frame = frame;
-  std::tie(sighting.start, sighting.end) =
-      makeLineEnds(window.camera(), window.camera().normalise(start_px), window.camera().normalise(end_px));
+  std::tie(sighting.start, sighting.end) = makeLineEnds(window.camera(), start_px, end_px);
   sighting.start_px = start_px;
   sighting.end_px = end_px;
   track.sightings.push_back(sighting);

@@ -13,6 +13,8 @@
 
 namespace lintel::test {
 
+inline const EstimatorParams kParams;  ///< the defaults
+
 /// A rig that is easy to compute with by hand: no distortion, focal length 500 px, camera and body axes the same.
 Rig plainRig();
 

@@ -6,7 +6,9 @@
 
 namespace lintel {
 
-NormalisedObservation makeObservation(const PinholeRadtan& camera, const Eigen::Vector2d& normalised) {
+namespace {
+
+NormalisedObservation linearised(const PinholeRadtan& camera, const Eigen::Vector2d& normalised) {
   NormalisedObservation o;
   o.position = normalised;
   const Eigen::Vector2d distorted = camera.distort(normalised);
@@ -18,8 +20,6 @@ NormalisedObservation makeObservation(const PinholeRadtan& camera, const Eigen::
   o.correction_jacobian.leftCols<6>() = camera.distortJacobian(normalised).inverse() * d_distorted;
   return o;
 }
-
-namespace {
 
 /// How the Jacobian of the distortion at an observation, of a fixed pixel, moves with component `k` of the correction:
 /// directly (k1 k2), and because the observation moves. Differences of a smooth function, exact to 1e-8.
@@ -39,11 +39,11 @@ Eigen::Matrix2d distortJacobianChange(const PinholeRadtan& camera, const Normali
 /// With J = d pixel / d normalised and the unit normal n of a line, a distance h across it is h / |J^-T n| pixels.
 LineEnd makeLineEnd(const PinholeRadtan& camera, const Eigen::Vector2d& normalised, const Eigen::Vector2d& normal) {
   LineEnd end;
-  static_cast<NormalisedObservation&>(end) = makeObservation(camera, normalised);
+  static_cast<NormalisedObservation&>(end) = linearised(camera, normalised);
   const Eigen::DiagonalMatrix<double, 2> F(camera.fx, camera.fy);
   const Eigen::Matrix2d D = camera.distortJacobian(normalised), J_inverse = (F * D).inverse();
   const Eigen::Vector2d v = J_inverse.transpose() * normal, w = J_inverse * v;
-  end.calibrated_scale_px = 1 / v.norm();
+  end.linearised_scale_px = 1 / v.norm();
   for (int k = 0; k < kTimeOffsetAt; ++k) {
     Eigen::Matrix2d dJ = F * distortJacobianChange(camera, end, k);
     if (k < 2) dJ.row(k) += D.row(k);  // fx fy
@@ -54,10 +54,22 @@ LineEnd makeLineEnd(const PinholeRadtan& camera, const Eigen::Vector2d& normalis
 
 }  // namespace
 
-std::pair<LineEnd, LineEnd> makeLineEnds(const PinholeRadtan& camera, const Eigen::Vector2d& start_normalised,
-                                         const Eigen::Vector2d& end_normalised) {
-  const Eigen::Vector2d along = (end_normalised - start_normalised).normalized(), normal(-along.y(), along.x());
-  return {makeLineEnd(camera, start_normalised, normal), makeLineEnd(camera, end_normalised, normal)};
+NormalisedObservation makeObservation(const PinholeRadtan& calibrated, const Eigen::Vector2d& px,
+                                      const CorrectionBlock& correction) {
+  const PinholeRadtan camera = correctedCamera(calibrated, correction.data());
+  NormalisedObservation o = linearised(camera, camera.normalise(px));
+  o.linearised_at = correction;
+  return o;
+}
+
+std::pair<LineEnd, LineEnd> makeLineEnds(const PinholeRadtan& calibrated, const Eigen::Vector2d& start_px,
+                                         const Eigen::Vector2d& end_px, const CorrectionBlock& correction) {
+  const PinholeRadtan camera = correctedCamera(calibrated, correction.data());
+  const Eigen::Vector2d start = camera.normalise(start_px), end = camera.normalise(end_px);
+  const Eigen::Vector2d along = (end - start).normalized(), normal(-along.y(), along.x());
+  std::pair<LineEnd, LineEnd> ends{makeLineEnd(camera, start, normal), makeLineEnd(camera, end, normal)};
+  ends.first.linearised_at = ends.second.linearised_at = correction;
+  return ends;
 }
 
 }  // namespace lintel

@@ -31,7 +31,7 @@ void LineFactor::linearise(const CameraView& view, const double* correction, con
   const LineEnd* seen[] = {&start_, &end_};
   for (int k = 0; k < 2; ++k)
     out.d_intrinsics.row(k) = scale[k] * normal.transpose() * seen[k]->correction_jacobian.leftCols<kIntrinsicsSize>() +
-                              weight_ * seen[k]->calibrated_scale_px * distances.residual[k] *
+                              weight_ * seen[k]->linearised_scale_px * distances.residual[k] *
                                   seen[k]->log_scale_jacobian.leftCols<kIntrinsicsSize>();
   const Eigen::Matrix<double, 2, 3> d_dw = d_nw * skew(from_camera_w);
   // u1 and u2 turn with U: d(U e) = -U [e]x dpsi

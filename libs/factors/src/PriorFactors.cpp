@@ -36,13 +36,15 @@ struct BlockDifference {
   Eigen::Matrix<double, Eigen::Dynamic, 4> by_alignment;
 };
 
-BlockDifference poseDifference(const double* block, const double* linearisation, const Alignment& a) {
+BlockDifference poseDifference(const double* block, const double* linearisation, const Alignment& a, bool derivatives) {
   const Pose now = poseFromBlock(block), then = poseFromBlock(linearisation);
   const Eigen::Matrix3d R = a.R * now.R();
   const Eigen::Vector3d p = a.R * (now.p - a.from), turned = logRotation(then.q.conjugate() * Eigen::Quaterniond(R));
-  const Eigen::Matrix3d J = rightJacobianInverse(turned);
-  BlockDifference d{Eigen::VectorXd(kPoseTangent), Eigen::MatrixXd::Zero(kPoseTangent, kPoseTangent), {}};
+  BlockDifference d{Eigen::VectorXd(kPoseTangent), {}, {}};
   d.value << p + a.to - then.p, turned;
+  if (!derivatives) return d;
+  const Eigen::Matrix3d J = rightJacobianInverse(turned);
+  d.by_block.setZero(kPoseTangent, kPoseTangent);
   d.by_block.topLeftCorner<3, 3>() = a.R;
   d.by_block.bottomRightCorner<3, 3>() = J;
   d.by_alignment.setZero(kPoseTangent, 4);
@@ -51,12 +53,13 @@ BlockDifference poseDifference(const double* block, const double* linearisation,
   return d;
 }
 
-BlockDifference motionDifference(const double* block, const double* linearisation, const Alignment& a) {
+BlockDifference motionDifference(const double* block, const double* linearisation, const Alignment& a,
+                                 bool derivatives) {
   const Eigen::Vector3d v = a.R * velocityOf(block);
-  BlockDifference d{Eigen::Map<const MotionBlock>(block) - Eigen::Map<const MotionBlock>(linearisation),
-                    Eigen::MatrixXd::Identity(kMotionSize, kMotionSize),
-                    {}};
+  BlockDifference d{Eigen::Map<const MotionBlock>(block) - Eigen::Map<const MotionBlock>(linearisation), {}, {}};
   d.value.segment<3>(kVelocityAt) = v - velocityOf(linearisation);
+  if (!derivatives) return d;
+  d.by_block.setIdentity(kMotionSize, kMotionSize);
   d.by_block.block<3, 3>(kVelocityAt, kVelocityAt) = a.R;
   d.by_alignment.setZero(kMotionSize, 4);
   d.by_alignment.block<3, 1>(kVelocityAt, 3) = Eigen::Vector3d::UnitZ().cross(v);
@@ -107,8 +110,8 @@ PriorDifference PriorFactor::difference(double const* const* parameters, bool de
   for (std::size_t i = 0; i < blocks_.size(); ++i) {
     const GaugeAction action = anchor_ < 0 ? GaugeAction::kNone : blocks_[i].action;
     const double* x_0 = blocks_[i].linearisation.data();
-    BlockDifference d = action == GaugeAction::kPose     ? poseDifference(parameters[i], x_0, alignment)
-                        : action == GaugeAction::kMotion ? motionDifference(parameters[i], x_0, alignment)
+    BlockDifference d = action == GaugeAction::kPose     ? poseDifference(parameters[i], x_0, alignment, derivatives)
+                        : action == GaugeAction::kMotion ? motionDifference(parameters[i], x_0, alignment, derivatives)
                                                          : plainDifference(parameters[i], blocks_[i], derivatives);
     result.value.segment(at, d.value.size()) = d.value;
     if (d.by_alignment.size() > 0) result.by_alignment.middleRows(at, d.value.size()) = d.by_alignment;

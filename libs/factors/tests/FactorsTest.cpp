@@ -52,7 +52,7 @@ NormalisedObservation observation(double x, double y) {
 LineEnd lineEnd(double x, double y, double scale_px) {
   LineEnd end;
   static_cast<NormalisedObservation&>(end) = observation(x, y);
-  end.calibrated_scale_px = scale_px;
+  end.linearised_scale_px = scale_px;
   end.log_scale_jacobian << 0.002, 0.003, -0.001, 0.004, 0.2, 0.1, 0;
   return end;
 }
@@ -143,20 +143,22 @@ TEST(LineFactor, GradientsFromFarToNearlyThroughTheCameraAndTheOrigin) {
 }
 
 TEST(LineFactor, IsInPixelsOfTheCorrectedCamera) {
-  // Whatever the correction: the distance of the observed pixels to the image of the line.
+  // The distance of the observed pixels to the image of the line, near the correction about which the ends are
+  // linearised, however large that is.
   const PinholeRadtan camera = eurocCamera();
   const PoseBlock identity = toBlock(Pose{});
   for (const Eigen::Vector2d& at : {Eigen::Vector2d(100, 60), Eigen::Vector2d(400, 250), Eigen::Vector2d(700, 420)})
     for (const double angle : {0.0, 0.7, 1.5}) {
       const Eigen::Vector2d along(std::cos(angle), std::sin(angle)), across(-along.y(), along.x());
       CorrectionBlock correction;
-      correction << 2, -1.5, 1, 1, 0.003, -0.002, 0;
+      correction << 22, 8.5, 11, -4, 0.253, -0.062, 0;
+      CorrectionBlock near;
+      near << 20, 10, 10, -5, 0.25, -0.06, 0;
       const PinholeRadtan corrected = correctedCamera(camera, correction.data());
       // a line through the image of two points, seen 2 px beside it
       const auto ray = [&](const Eigen::Vector2d& px) { return corrected.normalise(px).homogeneous().eval(); };
       const LineBlock line = toBlock(toOrthonormal(lineThrough(ray(at - 20 * along), ray(at + 20 * along))));
-      const auto [start, end] = makeLineEnds(camera, camera.normalise(at - 20 * along + 2 * across),
-                                             camera.normalise(at + 20 * along + 2 * across));
+      const auto [start, end] = makeLineEnds(camera, at - 20 * along + 2 * across, at + 20 * along + 2 * across, near);
       const double* blocks[] = {identity.data(), identity.data(), correction.data(), line.data()};
       Eigen::Vector2d r;
       ASSERT_TRUE(LineFactor(start, end, {}, Eigen::Vector3d::Zero(), 0.5).Evaluate(blocks, r.data(), nullptr));
@@ -168,16 +170,16 @@ TEST(LineFactor, IsInPixelsOfTheCorrectedCamera) {
 TEST(LineEnd, ScaleFollowsTheCorrection) {
   const PinholeRadtan camera = eurocCamera();
   const Eigen::Vector2d start_px(80, 50), end_px(180, 130);
-  const LineEnd end = makeLineEnds(camera, camera.normalise(start_px), camera.normalise(end_px)).first;
+  const LineEnd end = makeLineEnds(camera, start_px, end_px).first;
   for (int k = 0; k < kTimeOffsetAt; ++k) {
     const double step = k < 4 ? 0.1 : 1e-3;
     const auto scale = [&](double by) {
       CorrectionBlock correction = CorrectionBlock::Zero();
       correction[k] = by;
       const PinholeRadtan moved = correctedCamera(camera, correction.data());
-      return makeLineEnds(moved, moved.normalise(start_px), moved.normalise(end_px)).first.calibrated_scale_px;
+      return makeLineEnds(moved, start_px, end_px).first.linearised_scale_px;
     };
-    const double numeric = (scale(step) - scale(-step)) / (2 * step) / end.calibrated_scale_px;
+    const double numeric = (scale(step) - scale(-step)) / (2 * step) / end.linearised_scale_px;
     // the line's own turn on the normalised plane is left out
     EXPECT_NEAR(end.log_scale_jacobian[k], numeric, 0.05 * std::abs(numeric) + 1e-6) << k;
   }

@@ -19,7 +19,7 @@ GyroPath::GyroPath(const ImuBatch& imu) : imu_(imu) {
   for (std::size_t i = 1; i < imu.size(); ++i) {
     const double dt = 1e-9 * static_cast<double>(imu[i].t_ns - imu[i - 1].t_ns);
     R_b0_bk_.push_back((R_b0_bk_.back() * expRotation(0.5 * (imu[i].gyro + imu[i - 1].gyro) * dt)).normalized());
-    gaps_.push_back(gaps_.back() + (dt > kLargestGap_s));
+    gaps_.push_back(gaps_.back() + (dt > kLargestGap_s || imu[i].bridged));
   }
 }
 

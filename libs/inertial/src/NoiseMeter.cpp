@@ -45,7 +45,10 @@ std::string remark(const char* what, double given, double taken, const char* uni
 
 void NoiseMeter::add(const ImuBatch& batch) {
   for (std::size_t i = 1; i + 1 < batch.size(); ++i)
-    if (samples_.empty() || batch[i].t_ns > samples_.back().t_ns) samples_.push_back(batch[i]);
+    if (batch[i].bridged)
+      samples_.clear();  // interpolated: it has no noise
+    else if (samples_.empty() || batch[i].t_ns > samples_.back().t_ns)
+      samples_.push_back(batch[i]);
   if (samples_.empty()) return;
   while (seconds(samples_.front(), samples_.back()) > kSpan_s) samples_.pop_front();
   measure();

@@ -5,6 +5,15 @@
 
 namespace lintel {
 
+namespace {
+
+// Densities of what is not known about a motion that was not measured: over half a second, the longest time that is
+// bridged, 0.1 rad and 0.4 m/s remain open when rates change by 0.5 rad/s and 2 m/s^2 within a quarter of a second.
+constexpr double kBridgedGyro = 0.15;  // [rad/s/sqrt(Hz)]
+constexpr double kBridgedAccel = 0.6;  // [m/s^2/sqrt(Hz)]
+
+}  // namespace
+
 void Preintegration::append(const ImuBatch& samples) {
   for (const ImuSample& sample : samples) {
     if (!samples_.empty()) {
@@ -60,8 +69,9 @@ void Preintegration::integrate(const ImuSample& s0, const ImuSample& s1) {
 
   bias_jacobian_ = A * bias_jacobian_ - B;  // a bias is subtracted from the measurement
   Eigen::Matrix<double, 6, 1> variance;
-  variance << Eigen::Vector3d::Constant(noise_.gyro_noise * noise_.gyro_noise / dt),
-      Eigen::Vector3d::Constant(noise_.accel_noise * noise_.accel_noise / dt);
+  const double gyro = s1.bridged ? kBridgedGyro : noise_.gyro_noise;
+  const double accel = s1.bridged ? kBridgedAccel : noise_.accel_noise;
+  variance << Eigen::Vector3d::Constant(gyro * gyro / dt), Eigen::Vector3d::Constant(accel * accel / dt);
   covariance_ = A * covariance_ * A.transpose() + B * variance.asDiagonal() * B.transpose();
 
   delta_p_ += delta_v_ * dt + 0.5 * a * dt2;

@@ -87,6 +87,18 @@ TEST(Preintegration, FirstOrderCorrectionAgreesWithRepropagation) {
   EXPECT_LT((corrected.delta_p - p.deltaP()).norm(), 1e-6);
 }
 
+TEST(Preintegration, WhatWasNotMeasuredIsUncertain) {
+  Preintegration measured({}, {}), bridged({}, {});
+  ImuBatch samples = wavySamples(100);
+  measured.append(samples);
+  for (ImuSample& sample : samples) sample.bridged = true;
+  bridged.append(samples);
+  EXPECT_EQ(bridged.deltaP(), measured.deltaP());
+  EXPECT_LT(std::sqrt(measured.covariance()(0, 0)), 0.001);
+  EXPECT_NEAR(std::sqrt(bridged.covariance()(0, 0)), 0.1, 0.02);  // rad, after half a second
+  EXPECT_GT(std::sqrt(bridged.covariance()(3, 3)), 0.4);          // m/s
+}
+
 TEST(Preintegration, CovarianceOfPureNoiseIsThatOfARandomWalk) {
   ImuNoise noise;
   Preintegration p({}, noise);

@@ -60,14 +60,14 @@ void BatchProblem::addPoints() {
 }
 
 void BatchProblem::addLines() {
+  const CorrectionBlock correction = Eigen::Map<const CorrectionBlock>(at(correction_at_));
   for (std::size_t i = 0; i < lines_.size(); ++i) {
     const LineRecord& line = material_.lines[lines_[i]];
     const Eigen::Vector3d origin_w = originOf(line.views.front().keyframe);
     for (const LineView* view : spreadViews(line.views, most_views_)) {
       const LineView& v = *view;
       const auto k = static_cast<std::size_t>(keyframe_places_[v.keyframe]);
-      const PinholeRadtan& camera = calibrated_.camera;
-      const auto [start, end] = makeLineEnds(camera, camera.normalise(v.start_px), camera.normalise(v.end_px));
+      const auto [start, end] = makeLineEnds(calibrated_.camera, v.start_px, v.end_px, correction);
       line_factors_.emplace_back(start, end, motionOf(material_.keyframes[k]), origin_w,
                                  estimator_.factors.line_sigma_px * std::max(0.1, static_cast<double>(v.sigma_px)));
       problem_->AddResidualBlock(&line_factors_.back(), &line_loss_, at(poseAt(k)), at(extrinsics_at_),

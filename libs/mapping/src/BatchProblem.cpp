@@ -67,6 +67,7 @@ BatchProblem::BatchProblem(const Rig& calibrated, const EstimatorParams& estimat
       groups_(groups),
       point_loss_(estimator.factors.point_loss_width),
       line_loss_(estimator.factors.line_loss_width),
+      calibration_loss_(estimator.calibration.loss_width),
       structural_loss_(estimator.degeneracy.structural_loss_width),
       problem_(std::make_unique<ceres::Problem>(problemOptions())) {
   for (std::size_t i = 0; i < material.points.size(); ++i)
@@ -136,8 +137,15 @@ void BatchProblem::addPriors() {
     problem_->AddResidualBlock(cost.get(), nullptr, at(block));
     priors_.push_back(std::move(cost));
   };
-  add(makeExtrinsicsPrior(estimator_.calibration, calibrated_.T_b_c), extrinsics_at_);
-  add(makeCorrectionPrior(estimator_.calibration), correction_at_);
+  const auto addPart = [&](std::unique_ptr<ceres::CostFunction> cost, std::size_t block, bool refined) {
+    problem_->AddResidualBlock(cost.get(), refined ? &calibration_loss_ : nullptr, at(block));
+    priors_.push_back(std::move(cost));
+  };
+  const CalibrationParams& calibration = estimator_.calibration;
+  for (auto& part : makeExtrinsicsPriors(calibration, calibrated_.T_b_c))
+    addPart(std::move(part), extrinsics_at_, calibration.refine_extrinsics);
+  for (auto& part : makeCorrectionPriors(calibration))
+    addPart(std::move(part), correction_at_, calibration.refine_camera);
   for (std::size_t k = 0; k < material_.keyframes.size(); ++k) {
     const RetiredKeyframe& keyframe = material_.keyframes[k];
     if (keyframe.at_rest) add(makeRestPrior(estimator_.rest_velocity_sigma), motionAt(k));

@@ -76,7 +76,7 @@ class BatchProblem {
   std::size_t points_at_ = 0, lines_at_ = 0, extrinsics_at_ = 0, correction_at_ = 0, directions_at_ = 0,
               keyframes_at_ = 0;
 
-  ceres::CauchyLoss point_loss_, line_loss_, structural_loss_;
+  ceres::CauchyLoss point_loss_, line_loss_, calibration_loss_, structural_loss_;
   std::deque<PointFactor> point_factors_;
   std::deque<LineFactor> line_factors_;
   std::deque<SharedDirectionFactor> structural_factors_;

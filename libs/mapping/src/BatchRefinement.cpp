@@ -11,6 +11,7 @@
 #include "LineGroups.h"
 #include "MapFitting.h"
 #include "lintel/core/Quantiles.h"
+#include "lintel/estimator/StatePriors.h"
 #include "lintel/geometry/Rotation.h"
 #include "lintel/mapping/MapBuilder.h"
 
@@ -107,7 +108,7 @@ std::string objection(const MapMaterial& after, const EstimatorParams& estimator
 BatchRefinement::BatchRefinement(const Rig& calibrated, const EstimatorParams& estimator, const MapParams& map,
                                  const RefinementParams& params)
     : calibrated_(calibrated),
-      estimator_(scaledTo(calibrated.camera, estimator)),
+      estimator_(paramsFor(calibrated.camera, estimator)),
       map_(scaledTo(calibrated.camera, map)),
       params_(params) {
   checkRanges(estimator, "estimator.");

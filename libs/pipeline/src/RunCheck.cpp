@@ -18,21 +18,24 @@ constexpr double kLongLever_m = 2;          // longer than what holds a camera a
 constexpr double kLeastShareWithPose = 0.5;
 
 // How far the estimated calibration may go from the given one: some times what a rough calibration is wrong by (focal
-// length 2 %, mounting 3 degrees). Farther away it takes up errors that are not the camera's, or the camera is another.
-constexpr double kLargestFocalChange = 0.05, kLargestDistortionChange = 0.04, kLargestTurn_rad = 0.12;
+// length 2 %, mounting 3 degrees and some centimetres). Farther away it takes up errors that are not the camera's, or
+// the camera is another. The distortion may come from none given: it has no limit.
+constexpr double kLargestFocalChange = 0.05, kLargestTurn_rad = 0.12, kLargestMove_m = 0.2;
+
+// Squared misfits of the IMU between keyframes have nine degrees of freedom: a median of 8.3, or 25 times as much where
+// the IMU errs five times as much as its noise says (vibration).
+constexpr double kLargestImuMisfit = 25 * 8.3;
 
 std::string calibrationFault(const Rig& given, const Rig& estimated) {
   const double focal = estimated.camera.meanFocal() / given.camera.meanFocal() - 1;
-  const double k1 = estimated.camera.k1 - given.camera.k1;
   const double turn_rad = given.T_b_c.q.angularDistance(estimated.T_b_c.q);
-  if (std::abs(focal) <= kLargestFocalChange && std::abs(k1) <= kLargestDistortionChange &&
-      turn_rad <= kLargestTurn_rad)
-    return {};
+  const double move_m = (estimated.T_b_c.p - given.T_b_c.p).norm();
+  if (std::abs(focal) <= kLargestFocalChange && turn_rad <= kLargestTurn_rad && move_m <= kLargestMove_m) return {};
   char text[200];
-  std::snprintf(
-      text, sizeof text,
-      "the estimate left the given calibration: focal length %+.0f %%, k1 %+.2f, mounting turned by %.0f degrees",
-      100 * focal, k1, turn_rad * 57.29577951);
+  std::snprintf(text, sizeof text,
+                "the estimate left the given calibration: focal length %+.0f %%, mounting turned by %.0f degrees and "
+                "moved by %.0f cm",
+                100 * focal, turn_rad * 57.29577951, 100 * move_m);
   return text;
 }
 
@@ -111,6 +114,14 @@ std::string RunCheck::symptom(const OdometryStatistics& s, const Rig& estimated)
     std::snprintf(text, sizeof text, "the estimate did not last: %zu starts, poses for %.0f %% of the frames",
                   s.resets + 1, 100 * static_cast<double>(s.frames_with_pose) / static_cast<double>(s.frames));
     return text;
+  }
+  if (std::vector<double> misfits = imu_misfits_; !misfits.empty()) {
+    if (const double misfit = upperQuantile(misfits, 0.5); !(misfit < kLargestImuMisfit)) {
+      std::snprintf(text, sizeof text,
+                    "images and IMU contradict each other: the IMU is off by %.0f times its noise between keyframes",
+                    std::sqrt(misfit / 8.3));
+      return text;
+    }
   }
   return calibrationFault(rig_, estimated);
 }

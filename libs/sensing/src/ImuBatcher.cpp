@@ -8,7 +8,7 @@ namespace {
 
 ImuSample interpolate(const ImuSample& a, const ImuSample& b, std::int64_t t_ns) {
   const double s = static_cast<double>(t_ns - a.t_ns) / static_cast<double>(b.t_ns - a.t_ns);
-  return {t_ns, a.gyro + s * (b.gyro - a.gyro), a.accel + s * (b.accel - a.accel)};
+  return {t_ns, a.gyro + s * (b.gyro - a.gyro), a.accel + s * (b.accel - a.accel), b.bridged};
 }
 
 bool earlier(const ImuSample& sample, std::int64_t t_ns) { return sample.t_ns < t_ns; }
@@ -23,9 +23,20 @@ void ImuBatcher::readTo(std::int64_t t_ns, std::int64_t keep_from_ns) {
   while (samples_.empty() || samples_.back().t_ns < t_ns) {
     const std::optional<ImuSample> sample = next_(t_ns);
     if (!sample) return;
-    samples_.push_back(*sample);
+    append(*sample);
     forget();
   }
+}
+
+void ImuBatcher::append(ImuSample sample) {
+  if (!samples_.empty()) {
+    const ImuSample before = samples_.back();
+    const std::int64_t gap_ns = sample.t_ns - before.t_ns;
+    sample.bridged = gap_ns > kMaxGap_ns && gap_ns <= kMaxBridge_ns;
+    for (std::int64_t t_ns = before.t_ns + kBridgeStep_ns; sample.bridged && t_ns < sample.t_ns; t_ns += kBridgeStep_ns)
+      samples_.push_back(interpolate(before, sample, t_ns));
+  }
+  samples_.push_back(sample);
 }
 
 std::optional<ImuSample> ImuBatcher::at(std::int64_t t_ns) const {
@@ -44,7 +55,7 @@ ImuBatch ImuBatcher::before(std::int64_t t_ns) {
   auto begin = end;
   std::int64_t after_ns = t_ns;
   while (begin != samples_.begin() && (begin - 1)->t_ns >= t_ns - kLeadIn_ns &&
-         after_ns - (begin - 1)->t_ns <= kMaxGap_ns)
+         after_ns - (begin - 1)->t_ns <= kMaxGap_ns && !(begin != samples_.end() && begin->bridged))
     after_ns = (--begin)->t_ns;
   ImuBatch batch(begin, end);
   batch.push_back(*last);

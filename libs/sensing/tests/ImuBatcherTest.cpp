@@ -73,12 +73,32 @@ TEST(ImuBatcherTest, LeadInIsHalfASecondAndEndsAtAGap) {
   EXPECT_THAT(timesOf(gap.before(115 * kMs)), ElementsAre(100, 110, 115));
 }
 
-TEST(ImuBatcherTest, NothingIsInterpolatedOverADropOut) {
+std::vector<double> bridgedTimesOf(const ImuBatch& batch) {
+  std::vector<double> times;
+  for (const ImuSample& sample : batch)
+    if (sample.bridged) times.push_back(static_cast<double>(sample.t_ns) / kMs);
+  return times;
+}
+
+TEST(ImuBatcherTest, AShortDropOutIsBridgedAndSaysSo) {
   ImuBatcher imu = batcherOf({0, 10, 20, 71, 80, 90, 140});
   imu.before(5 * kMs);
-  EXPECT_THAT(imu.between(5 * kMs, 75 * kMs), IsEmpty());  // 20 to 71 inside
+  const ImuBatch first = imu.between(5 * kMs, 35 * kMs), second = imu.between(35 * kMs, 75 * kMs);
+  EXPECT_THAT(timesOf(first), ElementsAre(5, 10, 20, 30, 35));
+  EXPECT_THAT(bridgedTimesOf(first), ElementsAre(30, 35));
+  EXPECT_THAT(timesOf(second), ElementsAre(35, 40, 50, 60, 70, 71, 75));
+  EXPECT_THAT(bridgedTimesOf({second.begin() + 1, second.end()}), ElementsAre(40, 50, 60, 70, 71));
   EXPECT_THAT(timesOf(imu.between(75 * kMs, 85 * kMs)), ElementsAre(75, 80, 85));
-  EXPECT_THAT(timesOf(imu.between(85 * kMs, 100 * kMs)), ElementsAre(85, 90, 100));  // 50 ms are still no drop-out
+  const ImuBatch last = imu.between(85 * kMs, 100 * kMs);
+  EXPECT_THAT(timesOf(last), ElementsAre(85, 90, 100));
+  EXPECT_THAT(bridgedTimesOf(last), IsEmpty());  // 50 ms are still no drop-out
+}
+
+TEST(ImuBatcherTest, NothingIsInterpolatedOverALongDropOut) {
+  ImuBatcher imu = batcherOf({0, 10, 511, 520});
+  imu.before(5 * kMs);
+  EXPECT_THAT(imu.between(5 * kMs, 515 * kMs), IsEmpty());
+  EXPECT_THAT(timesOf(imu.between(515 * kMs, 520 * kMs)), ElementsAre(515, 520));
 }
 
 TEST(ImuBatcherTest, SkippingKeepsTheLeadIn) {

@@ -17,6 +17,7 @@ namespace {
 
 constexpr double kStep_s = 0.005;          // of the grid: much less than a turn takes
 constexpr double kLeastCertain_s = 0.012;  // the range is sixteen times as wide
+constexpr double kLeastTurn_px = 0.3;      // a turn that moves points by less than tracks err shows no offset
 constexpr double kWidth_px = 2;            // of the robust loss
 constexpr std::size_t kMostRays = 30;      // of a pair
 constexpr std::size_t kLeastRays = 12;
@@ -125,7 +126,9 @@ ClockOffset findClockOffset(const std::vector<FrameTracks>& frames, const ImuBat
   const EpipolarSystem still = fit.withoutGyro();
   found.rms_still_px = focal * std::sqrt(still.sum / still.weights);
   found.bias_gyro_sigma = (variance * there.H.inverse()).diagonal().cwiseSqrt();
-  found.determined = found.sigma_s < kLeastCertain_s;
+  const double turn_px =
+      std::sqrt(std::max(0.0, found.rms_still_px * found.rms_still_px - found.rms_px * found.rms_px));
+  found.determined = found.sigma_s < kLeastCertain_s && turn_px > kLeastTurn_px;
   return found;
 }
 

@@ -31,7 +31,9 @@ bool secondNewestIsKeyframe(const SlidingWindow& window, const EstimatorParams& 
 
 bool isAtRest(const SlidingWindow& window, const EstimatorParams& params) {
   const std::size_t n = window.frames.size();
-  if (n < 2) return false;
+  if (!params.detect_rest || n < 2) return false;
+  // far points do not show a slow uniform motion, nor does the IMU
+  if (velocityOf(window.frames[n - 1].motion.data()).norm() > params.rest_speed) return false;
   const double disparity = medianDisparityPx(window, n - 2, n - 1, false);
   if (disparity < 0 || disparity > params.rest_disparity_px) return false;
   const Preintegration* imu = window.frames[n - 1].imu.get();

@@ -10,7 +10,7 @@ namespace lintel {
 /// much time [Qin2018].
 bool secondNewestIsKeyframe(const SlidingWindow& window, const EstimatorParams& params);
 
-/// Whether nothing has moved between the two newest frames, for the images and for the IMU.
+/// Whether nothing has moved between the two newest frames, for the images, the IMU and the estimate.
 bool isAtRest(const SlidingWindow& window, const EstimatorParams& params);
 
 int pointsInNewest(const SlidingWindow& window);

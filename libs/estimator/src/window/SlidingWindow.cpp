@@ -2,7 +2,9 @@
 #include "lintel/estimator/SlidingWindow.h"
 
 #include <algorithm>
+#include <limits>
 #include <stdexcept>
+#include <tuple>
 
 namespace lintel {
 
@@ -46,15 +48,35 @@ void SlidingWindow::addFrame(WindowFrame frame, const FrameTracks& tracks) {
   for (const PointObservation& o : tracks.points) {
     PointTrack& track = points[o.id];
     track.id = o.id;
-    track.sightings.push_back({frame.id, makeObservation(camera_, o.normalised), o.px});
+    track.sightings.push_back({frame.id, makeObservation(camera_, o.px, linearised_at_), o.px});
   }
   for (const LineObservation& o : tracks.lines) {
     LineTrack& track = lines[o.id];
     track.id = o.id;
-    const auto [start, end] = makeLineEnds(camera_, o.start, o.end);
+    const auto [start, end] = makeLineEnds(camera_, o.start_px, o.end_px, linearised_at_);
     track.sightings.push_back({frame.id, start, end, o.start_px, o.end_px, o.sigma_px});
   }
   frames.push_back(std::move(frame));
+}
+
+void SlidingWindow::relinearise() {
+  CorrectionBlock small;  // what the observations are linear within, to a hundredth of a pixel
+  const double px = 0.002 * camera_.meanFocal(), distortion = 0.003;
+  small << px, px, px, px, distortion, distortion, std::numeric_limits<double>::infinity();
+  if (((correction - linearised_at_).cwiseAbs().array() <= small.array()).all()) return;
+  linearised_at_ = correction;
+  const auto renewPoint = [&](PointSighting& s) { s.observation = makeObservation(camera_, s.px, linearised_at_); };
+  const auto renewLine = [&](LineSighting& s) {
+    std::tie(s.start, s.end) = makeLineEnds(camera_, s.start_px, s.end_px, linearised_at_);
+  };
+  for (auto& [id, track] : points) {
+    std::for_each(track.sightings.begin(), track.sightings.end(), renewPoint);
+    std::for_each(track.former.begin(), track.former.end(), renewPoint);
+  }
+  for (auto& [id, track] : lines) {
+    std::for_each(track.sightings.begin(), track.sightings.end(), renewLine);
+    std::for_each(track.former.begin(), track.former.end(), renewLine);
+  }
 }
 
 void SlidingWindow::removeFrame(FrameId id, bool keyframe) {

@@ -1,20 +1,38 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "lintel/estimator/StatePriors.h"
 
+#include <algorithm>
 #include <limits>
 
 namespace lintel {
 
 namespace {
 
-constexpr double kHeld = 1e-9;  // sigma of what is not refined, in its own unit
+constexpr double kHeld = 1e-9;              // sigma of what is not refined, in its own unit
+constexpr double kUnknownDistortion = 0.1;  // k1 and k2 of lenses that are no fisheyes
 constexpr double kFree = std::numeric_limits<double>::infinity();
 
 std::unique_ptr<PriorFactor> makeMotionPrior(const MotionBlock& sigma) {
   return makeBlockPrior(std::make_shared<VectorManifold>(kMotionSize), MotionBlock::Zero(), sigma);
 }
 
+/// On the `size` tangent components from `at` alone.
+std::unique_ptr<PriorFactor> makePartPrior(std::shared_ptr<const StateManifold> manifold, const Eigen::VectorXd& x_0,
+                                           int at, int size, double sigma) {
+  Eigen::MatrixXd A = Eigen::MatrixXd::Zero(size, manifold->TangentSize());
+  A.middleCols(at, size).setIdentity();
+  std::vector<PriorBlock> blocks{{std::move(manifold), x_0}};
+  return std::make_unique<PriorFactor>(std::move(blocks), A / sigma, Eigen::VectorXd::Zero(size));
+}
+
 }  // namespace
+
+EstimatorParams paramsFor(const PinholeRadtan& camera, const EstimatorParams& params) {
+  EstimatorParams used = scaledTo(camera, params);
+  double& sigma = used.calibration.distortion_sigma;
+  if (camera.k1 == 0 && camera.k2 == 0 && camera.p1 == 0 && camera.p2 == 0) sigma = std::max(sigma, kUnknownDistortion);
+  return used;
+}
 
 std::unique_ptr<PriorFactor> makeGaugePrior(const PoseBlock& pose) {
   constexpr double kWeight = 1e3;  // a millimetre, a milliradian: stiff, yet no worse conditioned than the rest
@@ -25,20 +43,28 @@ std::unique_ptr<PriorFactor> makeGaugePrior(const PoseBlock& pose) {
   return std::make_unique<PriorFactor>(std::move(blocks), std::move(A), Eigen::VectorXd::Zero(4));
 }
 
-std::unique_ptr<PriorFactor> makeExtrinsicsPrior(const CalibrationParams& p, const Pose& T_b_c_calibrated) {
-  Eigen::VectorXd sigma(kPoseTangent);
-  sigma << Eigen::Vector3d::Constant(p.refine_extrinsics ? p.extrinsic_translation_sigma_m : kHeld),
-      Eigen::Vector3d::Constant(p.refine_extrinsics ? p.extrinsic_rotation_sigma_rad : kHeld);
-  return makeBlockPrior(std::make_shared<PoseManifold>(), toBlock(T_b_c_calibrated), sigma);
+PriorParts makeExtrinsicsPriors(const CalibrationParams& p, const Pose& T_b_c_calibrated) {
+  const PoseBlock calibrated = toBlock(T_b_c_calibrated);
+  const auto manifold = std::make_shared<PoseManifold>();
+  PriorParts parts;
+  const auto add = [&](int at, double sigma) { parts.push_back(makePartPrior(manifold, calibrated, at, 3, sigma)); };
+  add(0, p.refine_extrinsics ? p.extrinsic_translation_sigma_m : kHeld);
+  add(3, p.refine_extrinsics ? p.extrinsic_rotation_sigma_rad : kHeld);
+  return parts;
 }
 
-std::unique_ptr<PriorFactor> makeCorrectionPrior(const CalibrationParams& p) {
-  CorrectionBlock sigma;
-  sigma << p.focal_sigma_px, p.focal_sigma_px, p.centre_sigma_px, p.centre_sigma_px, p.distortion_sigma,
-      p.distortion_sigma, p.time_offset_sigma_s;
-  if (!p.refine_camera) sigma.head<kTimeOffsetAt>().setConstant(kHeld);
-  if (!p.refine_time_offset) sigma[kTimeOffsetAt] = kHeld;
-  return makeBlockPrior(std::make_shared<VectorManifold>(kCorrectionSize), CorrectionBlock::Zero(), sigma);
+PriorParts makeCorrectionPriors(const CalibrationParams& p) {
+  const CorrectionBlock zero = CorrectionBlock::Zero();
+  const auto manifold = std::make_shared<VectorManifold>(kCorrectionSize);
+  PriorParts parts;
+  const auto add = [&](int at, int size, double sigma) {
+    parts.push_back(makePartPrior(manifold, zero, at, size, sigma));
+  };
+  add(0, 2, p.refine_camera ? p.focal_sigma_px : kHeld);
+  add(2, 2, p.refine_camera ? p.centre_sigma_px : kHeld);
+  add(4, 2, p.refine_camera ? p.distortion_sigma : kHeld);
+  add(kTimeOffsetAt, 1, p.refine_time_offset ? p.time_offset_sigma_s : kHeld);
+  return parts;
 }
 
 std::unique_ptr<PriorFactor> makeRestPrior(double velocity_sigma) {

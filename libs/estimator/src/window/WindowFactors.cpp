@@ -41,8 +41,11 @@ void WindowFactors::addPriors() {
 }
 
 void WindowFactors::addCalibrationPriors(const CalibrationParams& params, const Pose& T_b_c_calibrated) {
-  add(makeExtrinsicsPrior(params, T_b_c_calibrated), {{BlockKey::kExtrinsics, 0}});
-  add(makeCorrectionPrior(params), {{BlockKey::kCorrection, 0}});
+  calibration_loss_ = std::make_unique<ceres::CauchyLoss>(params.loss_width);
+  for (auto& part : makeExtrinsicsPriors(params, T_b_c_calibrated))
+    add(std::move(part), {{BlockKey::kExtrinsics, 0}}, params.refine_extrinsics ? calibration_loss_.get() : nullptr);
+  for (auto& part : makeCorrectionPriors(params))
+    add(std::move(part), {{BlockKey::kCorrection, 0}}, params.refine_camera ? calibration_loss_.get() : nullptr);
 }
 
 void WindowFactors::addGauge() {

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <random>
 
 #include "TestWindow.h"
 
@@ -29,7 +30,7 @@ Span spanOf(const TrackedFlight& flight, double offset_s) {
   return span;
 }
 
-TrackedFlight flight(double gyro_bias, double noise_px) {
+TrackedFlight turningFlight(double gyro_bias, double noise_px) {
   ImuSimulatorParams imu;
   imu.initial_gyro_bias = gyro_bias;
   TrackSimulationParams tracks;
@@ -40,7 +41,7 @@ TrackedFlight flight(double gyro_bias, double noise_px) {
 
 TEST(ClockOffset, IsFoundWhateverTheGyroBias) {
   for (const double bias : {0.0, 0.05}) {
-    const TrackedFlight f = flight(bias, 0.5);
+    const TrackedFlight f = turningFlight(bias, 0.5);
     for (const double offset_s : {-0.083, -0.05, 0.0, 0.02, 0.071}) {
       const Span span = spanOf(f, offset_s);
       const ClockOffset found = findClockOffset(span.frames, span.imu, f.rig);
@@ -52,24 +53,26 @@ TEST(ClockOffset, IsFoundWhateverTheGyroBias) {
 }
 
 TEST(ClockOffset, IsNotFoundBeyondItsRange) {
-  const TrackedFlight f = flight(0.02, 0.5);
+  const TrackedFlight f = turningFlight(0.02, 0.5);
   const Span span = spanOf(f, 0.6);
   const ClockOffset found = findClockOffset(span.frames, span.imu, f.rig);
   EXPECT_TRUE(!found.determined || found.rms_px > 2) << found.offset_s << " " << found.rms_px;
 }
 
-TEST(ClockOffset, NothingIsSaidWithoutRotationOrWithoutData) {
-  const Rig rig = plainRig();
-  EXPECT_FALSE(findClockOffset({}, {}, rig).determined);
+/// A camera that does not turn and slides along by `step_m` a frame; both sensors have noise.
+Span sliding(double step_m, double noise_px) {
   Span span;
-  for (int i = 0; i < 60; ++i) {  // a camera that slides along
+  std::mt19937_64 engine(5);
+  std::normal_distribution<double> noise(0, noise_px / plainRig().camera.meanFocal());
+  for (int i = 0; i < 60; ++i) {
     FrameTracks frame;
     frame.t_ns = 50'000'000LL * (i + 10);
     for (TrackId id = 0; id < 40; ++id) {
       PointObservation p;
       p.id = id;
       const double z = 3 + static_cast<double>(id % 7);
-      p.normalised = {(static_cast<double>(id % 8) - 4 + 0.02 * i) / z, (static_cast<double>(id / 8) - 2.5) / z};
+      p.normalised = {(static_cast<double>(id % 8) - 4 + step_m * i) / z + noise(engine),
+                      (static_cast<double>(id / 8) - 2.5) / z + noise(engine)};
       frame.points.push_back(p);
     }
     span.frames.push_back(frame);
@@ -80,7 +83,17 @@ TEST(ClockOffset, NothingIsSaidWithoutRotationOrWithoutData) {
     sample.gyro = 1e-3 * Eigen::Vector3d(std::sin(12.9898 * i), std::sin(78.233 * i), std::sin(37.719 * i));
     span.imu.push_back(sample);
   }
-  EXPECT_FALSE(findClockOffset(span.frames, span.imu, rig).determined);
+  return span;
+}
+
+TEST(ClockOffset, NothingIsSaidWithoutRotationOrWithoutData) {
+  const Rig rig = plainRig();
+  EXPECT_FALSE(findClockOffset({}, {}, rig).determined);
+  for (const double step_m : {0.02, 0.0})
+    for (const double noise_px : {0.0, 0.05, 0.5}) {
+      const Span span = sliding(step_m, noise_px);
+      EXPECT_FALSE(findClockOffset(span.frames, span.imu, rig).determined) << step_m << " m, " << noise_px << " px";
+    }
 }
 
 }  // namespace

@@ -19,7 +19,7 @@ class InitializerTest : public testing::Test {
   Initializer initializer_{params_, eurocRig().T_b_c};
 };
 
-TrackedFlight flight(double noise_px, const ImuSimulatorParams& imu, double duration_s = 4,
+TrackedFlight noisyFlight(double noise_px, const ImuSimulatorParams& imu, double duration_s = 4,
                      const Trajectory& trajectory = FigureTrajectory()) {
   TrackSimulationParams tracks;
   tracks.duration_s = duration_s;
@@ -44,7 +44,7 @@ double tiltError(const WindowFrame& frame, const InertialTruth& truth) {
 
 TEST_F(InitializerTest, StartsInMotion) {
   ImuSimulatorParams imu;
-  const TrackedFlight f = flight(0.5, imu);
+  const TrackedFlight f = noisyFlight(0.5, imu);
   SlidingWindow window = bufferOf(f, 0, 20);
   ASSERT_EQ(initializer_.initialise(window), "");
   EXPECT_LT(relativeMotionError(window, f, 0, 38), 0.10);
@@ -57,7 +57,7 @@ TEST_F(InitializerTest, StartsInMotion) {
 }
 
 TEST_F(InitializerTest, ACleanStartIsPrecise) {
-  const TrackedFlight f = flight(0, perfectImu());
+  const TrackedFlight f = noisyFlight(0, perfectImu());
   SlidingWindow window = bufferOf(f, 0, 20);
   ASSERT_EQ(initializer_.initialise(window), "");
   EXPECT_LT(relativeMotionError(window, f, 0, 38), 0.02);
@@ -67,7 +67,7 @@ TEST_F(InitializerTest, ACleanStartIsPrecise) {
 TEST_F(InitializerTest, AcceptedStartsAreGoodWhereverTheyAreTried) {
   ImuSimulatorParams imu;
   imu.seed = 4;
-  const TrackedFlight f = flight(0.5, imu, 10);
+  const TrackedFlight f = noisyFlight(0.5, imu, 10);
   int accepted = 0;
   for (std::size_t first = 0; first + 40 < f.sim.frames.size(); first += 32) {
     SlidingWindow window = bufferOf(f, first, 20);
@@ -82,7 +82,7 @@ TEST_F(InitializerTest, AcceptedStartsAreGoodWhereverTheyAreTried) {
 TEST_F(InitializerTest, StartsAtRest) {
   const DelayedStart resting(std::make_shared<FigureTrajectory>(), 4);
   ImuSimulatorParams imu;
-  const TrackedFlight f = flight(0.1, imu, 3, resting);
+  const TrackedFlight f = noisyFlight(0.1, imu, 3, resting);
   SlidingWindow window = bufferOf(f, 0, 12);
   EXPECT_TRUE(initializer_.atRest(window));
   ASSERT_EQ(initializer_.initialise(window), "");
@@ -99,7 +99,7 @@ TEST_F(InitializerTest, StartsAtRest) {
 TEST_F(InitializerTest, PureRotationIsNeverAccepted) {
   FigureParams turning;
   turning.translation = 0;
-  const TrackedFlight f = flight(0.5, ImuSimulatorParams{}, 10, FigureTrajectory(turning));
+  const TrackedFlight f = noisyFlight(0.5, ImuSimulatorParams{}, 10, FigureTrajectory(turning));
   for (std::size_t first = 0; first + 40 < f.sim.frames.size(); first += 32) {
     SlidingWindow window = bufferOf(f, first, 20);
     EXPECT_FALSE(initializer_.atRest(window));
@@ -110,7 +110,7 @@ TEST_F(InitializerTest, PureRotationIsNeverAccepted) {
 TEST_F(InitializerTest, ARefusedStartLeavesTheBufferAlone) {
   FigureParams turning;
   turning.translation = 0;
-  const TrackedFlight f = flight(0, perfectImu(), 3, FigureTrajectory(turning));
+  const TrackedFlight f = noisyFlight(0, perfectImu(), 3, FigureTrajectory(turning));
   SlidingWindow window = bufferOf(f, 0, 20);
   const SlidingWindow before = window;
   ASSERT_NE(initializer_.initialise(window), "");
@@ -127,7 +127,7 @@ TEST_F(InitializerTest, ARefusedStartLeavesTheBufferAlone) {
 }
 
 TEST_F(InitializerTest, SaysWhatItWaitsFor) {
-  const TrackedFlight f = flight(0, perfectImu());
+  const TrackedFlight f = noisyFlight(0, perfectImu());
   SlidingWindow few = bufferOf(f, 0, 9);
   EXPECT_EQ(initializer_.initialise(few), "collecting frames");
   SlidingWindow gap = bufferOf(f, 0, 15);
@@ -136,7 +136,7 @@ TEST_F(InitializerTest, SaysWhatItWaitsFor) {
   FigureParams slow;
   slow.half_extent = {0.02, 0.02, 0.02};
   slow.shake = 0;
-  const TrackedFlight hovering = flight(0, perfectImu(), 3, FigureTrajectory(slow));
+  const TrackedFlight hovering = noisyFlight(0, perfectImu(), 3, FigureTrajectory(slow));
   SlidingWindow hover = bufferOf(hovering, 0, 15);
   EXPECT_EQ(initializer_.initialise(hover), "waiting for parallax");
 }
@@ -144,7 +144,7 @@ TEST_F(InitializerTest, SaysWhatItWaitsFor) {
 TEST(MedianDisparity, CountsPixelsWithAndWithoutRotation) {
   FigureParams turning;
   turning.translation = 0;
-  const TrackedFlight f = flight(0, perfectImu(), 2, FigureTrajectory(turning));
+  const TrackedFlight f = noisyFlight(0, perfectImu(), 2, FigureTrajectory(turning));
   const SlidingWindow window = bufferOf(f, 0, 10);
   const double seen = medianDisparityPx(window, 0, 9, false), without_rotation = medianDisparityPx(window, 0, 9, true);
   EXPECT_GT(seen, 20);

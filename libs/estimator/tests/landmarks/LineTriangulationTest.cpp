@@ -12,7 +12,6 @@ namespace {
 
 using namespace test;
 
-const EstimatorParams kParams;
 
 /// How far a segment's ends are from the track's line [m].
 double distanceOf(const LineTrack& track, const Segment3& segment_w) {

@@ -11,7 +11,6 @@ namespace {
 
 using namespace test;
 
-const EstimatorParams kParams;
 const std::vector<Pose> kAhead{at(0, 0, 0), at(0, 0, 0.1), at(0, 0, 0.2), at(0, 0, 0.3), at(0, 0, 0.4)};
 
 /// A line seen by all frames.
@@ -31,7 +30,7 @@ SlidingWindow windowWithRails(int count) {
   return window;
 }
 
-Eigen::Vector3d directionOf(const LineTrack& track) { return lineInWorld(track).d.normalized(); }
+Eigen::Vector3d directionInWorld(const LineTrack& track) { return lineInWorld(track).d.normalized(); }
 
 TEST(ParallelGroups, RailsAlongTheMotionShareItsDirection) {
   SlidingWindow window = windowWithRails(6);
@@ -40,7 +39,7 @@ TEST(ParallelGroups, RailsAlongTheMotionShareItsDirection) {
   ASSERT_EQ(window.directions.size(), 1u);
   for (const auto& [id, track] : window.lines) {
     EXPECT_NE(track.group, 0u);
-    EXPECT_LT(directionOf(track).cross(Eigen::Vector3d::UnitZ()).norm(), 1e-3);
+    EXPECT_LT(directionInWorld(track).cross(Eigen::Vector3d::UnitZ()).norm(), 1e-3);
   }
 }
 

@@ -13,7 +13,7 @@ namespace {
 
 using namespace test;
 
-const LandmarkParams kParams;
+const LandmarkParams kLandmarks;
 const std::vector<Pose> kSideways{at(0, 0, 0), at(0.3, 0.02, 0), at(0.6, 0, 0.05), at(1, -0.1, 0)};
 const Eigen::Vector3d kPoint(0.7, -0.4, 5);
 
@@ -27,7 +27,7 @@ SlidingWindow windowThatSees(const Eigen::Vector3d& p_w) {
 TEST(PointTriangulation, IsExactWithoutNoise) {
   SlidingWindow window = windowThatSees(kPoint);
   PointTrack& track = window.points[1];
-  ASSERT_TRUE(triangulatePoint(window, kParams, 1, track));
+  ASSERT_TRUE(triangulatePoint(window, kLandmarks, 1, track));
   EXPECT_TRUE(track.triangulated);
   EXPECT_LT((window.positionOf(track) - kPoint).norm(), 1e-9);
   EXPECT_NEAR(track.point.norm(), 1, 1e-12);
@@ -38,7 +38,7 @@ TEST(PointTriangulation, SigmaIsThatOfASingleBaseline) {
   SlidingWindow window = windowAt({at(0, 0, 0), at(0.5, 0, 0)});
   const Eigen::Vector3d p_w(0.2, 0.1, 4);
   for (FrameId k = 0; k < 2; ++k) seePoint(window, 1, k, p_w);
-  ASSERT_TRUE(triangulatePoint(window, kParams, 0.8, window.points[1]));
+  ASSERT_TRUE(triangulatePoint(window, kLandmarks, 0.8, window.points[1]));
   // u = f (x - b lambda): d u / d lambda = f b
   EXPECT_NEAR(window.points[1].sigma_inverse_depth, 0.8 / (500 * 0.5), 1e-9);
 }
@@ -48,12 +48,12 @@ TEST(PointTriangulation, HandlesAFlight) {
   tracks.duration_s = 3;
   const TrackedFlight flight = fly(perfectImu(), tracks);
   SlidingWindow window = trueWindow(flight, 0, 15);
-  triangulatePoints(window, kParams, 1);
+  triangulatePoints(window, kLandmarks, 1);
   int triangulated = 0;
   for (const auto& [id, track] : window.points) {
     if (!track.triangulated) continue;
     ++triangulated;
-    EXPECT_GE(static_cast<int>(track.sightings.size()), kParams.point_min_observations);
+    EXPECT_GE(static_cast<int>(track.sightings.size()), kLandmarks.point_min_observations);
     EXPECT_LT((window.positionOf(track) - flight.sim.points_w[flight.sim.point_of_track[id]]).norm(), 1e-4);
   }
   EXPECT_GT(triangulated, 100);
@@ -62,26 +62,26 @@ TEST(PointTriangulation, HandlesAFlight) {
 TEST(PointTriangulation, WithoutParallaxADepthIsNotGuessed) {
   SlidingWindow window = windowAt({at(0, 0, 0), at(0.001, 0, 0), at(0, 0.001, 0)});
   for (FrameId k = 0; k < 3; ++k) seePoint(window, 1, k, {0.5, 0.2, 30});
-  EXPECT_FALSE(triangulatePoint(window, kParams, 1, window.points[1]));
+  EXPECT_FALSE(triangulatePoint(window, kLandmarks, 1, window.points[1]));
   EXPECT_FALSE(window.points[1].triangulated);
 }
 
 TEST(PointTriangulation, ContradictionsAndPointsBehindAreRefused) {
   SlidingWindow window = windowAt(kSideways);
   for (FrameId k = 0; k < 4; ++k) seePoint(window, 1, k, {0.7, -0.4, 5}, {0, k % 2 == 0 ? 12.0 : -12.0});
-  EXPECT_FALSE(triangulatePoint(window, kParams, 1, window.points[1]));
+  EXPECT_FALSE(triangulatePoint(window, kLandmarks, 1, window.points[1]));
   // rays that diverge meet behind the cameras
   seePoint(window, 2, 0, {0, 0, 5});
   seePoint(window, 2, 3, {3, 0, 5});
-  EXPECT_FALSE(triangulatePoint(window, kParams, 1, window.points[2]));
+  EXPECT_FALSE(triangulatePoint(window, kLandmarks, 1, window.points[2]));
   seePoint(window, 3, 0, {0, 0, 5});
-  EXPECT_FALSE(triangulatePoint(window, kParams, 1, window.points[3])) << "one sighting";
+  EXPECT_FALSE(triangulatePoint(window, kLandmarks, 1, window.points[3])) << "one sighting";
 }
 
 TEST(ReprojectionError, IsTheMeanDistanceInPixels) {
   SlidingWindow window = windowThatSees(kPoint);
   PointTrack& track = window.points[1];
-  ASSERT_TRUE(triangulatePoint(window, kParams, 1, track));
+  ASSERT_TRUE(triangulatePoint(window, kLandmarks, 1, track));
   track.sightings[2].px += Eigen::Vector2d(3, 4);
   EXPECT_NEAR(reprojectionError(window, track), 5.0 / 4, 1e-6);
   window.frames[1].pose = toBlock(at(0, 0, 20));  // past the point
@@ -92,7 +92,7 @@ TEST(PointUncertainty, OnlyEverImproves) {
   SlidingWindow window = windowAt(kSideways);
   for (FrameId k = 0; k < 3; ++k) seePoint(window, 1, k, {0.7, -0.4, 5});
   PointTrack& track = window.points[1];
-  ASSERT_TRUE(triangulatePoint(window, kParams, 1, track));
+  ASSERT_TRUE(triangulatePoint(window, kLandmarks, 1, track));
   const double three = track.sigma_inverse_depth;
   seePoint(window, 1, 3, {0.7, -0.4, 5});
   updatePointUncertainty(window, 1, track);

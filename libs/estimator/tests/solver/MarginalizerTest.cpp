@@ -20,7 +20,6 @@ namespace {
 
 using namespace test;
 
-const EstimatorParams kParams;
 
 std::set<BlockKey> firstFrameAndPoints(const SlidingWindow& window) {
   std::set<BlockKey> dropped{{BlockKey::kPose, 0}, {BlockKey::kMotion, 0}};
@@ -181,13 +180,19 @@ double resistance(SlidingWindow& window, const WindowPrior& prior, const Eigen::
   return std::sqrt(std::abs(direction.dot(eq.H * direction))) / strongest;
 }
 
-TEST(MarginalisedPrior, LeavesPositionAndYawFree) {
+/// Ten frames at their true places with points.
+SlidingWindow exactWindow() {
   TrackSimulationParams tracks;
   tracks.duration_s = 3;
   tracks.max_points_per_frame = 60;
   const TrackedFlight flight = fly(perfectImu(), tracks);
   SlidingWindow window = trueWindow(flight, 0, 10);
   triangulatePoints(window, kParams.landmarks, 1);
+  return window;
+}
+
+TEST(MarginalisedPrior, LeavesPositionAndYawFree) {
+  SlidingWindow window = exactWindow();
   for (int round = 0; round < 3; ++round) {  // a prior goes into the next one
     marginaliseOldest(window, kParams);
     window.removeFrame(window.frames.front().id, true);
@@ -208,12 +213,7 @@ TEST(MarginalisedPrior, LeavesPositionAndYawFree) {
 }
 
 TEST(MarginalisedPrior, LeavesPositionAndYawFreeWhereverTheWindowHasMoved) {
-  TrackSimulationParams tracks;
-  tracks.duration_s = 3;
-  tracks.max_points_per_frame = 60;
-  const TrackedFlight flight = fly(perfectImu(), tracks);
-  SlidingWindow window = trueWindow(flight, 0, 10);
-  triangulatePoints(window, kParams.landmarks, 1);
+  SlidingWindow window = exactWindow();
   for (int round = 0; round < 3; ++round) {
     marginaliseOldest(window, kParams);
     window.removeFrame(window.frames.front().id, true);

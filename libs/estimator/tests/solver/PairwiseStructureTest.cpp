@@ -32,7 +32,6 @@ namespace {
 
 using namespace test;
 
-const EstimatorParams kParams;
 constexpr double kSigma_rad = 2e-3;
 constexpr std::uint64_t kDirection = 3;
 

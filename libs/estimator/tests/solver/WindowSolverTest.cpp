@@ -16,7 +16,6 @@ namespace {
 
 using namespace test;
 
-const EstimatorParams kParams;
 
 SlidingWindow disturbedWindow() {
   TrackSimulationParams tracks;

@@ -71,6 +71,21 @@ TEST(Rest, ImagesAndImuMustAgree) {
   EXPECT_FALSE(isAtRest(moving, params));
 }
 
+TEST(Rest, IsNotASlowUniformMotionFarFromAllPoints) {
+  // 10 cm/s, 20 m away: 0.2 px in a tenth of a second, and the IMU shows nothing
+  SlidingWindow slow = resting(0.005, 0.1);
+  for (auto& [id, track] : slow.points) track.sightings.back().observation.position.x() += 0.2 / 458;
+  EXPECT_TRUE(isAtRest(slow, {}));
+  slow.frames.back().motion[kVelocityAt] = 0.1;
+  EXPECT_FALSE(isAtRest(slow, {}));
+}
+
+TEST(Rest, CanBeSwitchedOff) {
+  EstimatorParams params;
+  params.detect_rest = false;
+  EXPECT_FALSE(isAtRest(resting(0.005, 0.1), params));
+}
+
 TEST(FeaturesInNewest, CountOnlyWhatTheNewestFrameSaw) {
   SlidingWindow window = threeFrames(0, 30);
   for (TrackId id = 100; id < 105; ++id) seePoint(window, id, 1, {0, 0, 5});

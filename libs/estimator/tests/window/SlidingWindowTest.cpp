@@ -103,10 +103,32 @@ TEST(SlidingWindow, TheCorrectionIsOnTopOfTheCalibration) {
   EXPECT_EQ(b.k2, a.k2 + 0.02);
 }
 
+TEST(SlidingWindow, ObservationsFollowALargeCorrection) {
+  SlidingWindow window = sample();
+  window.removeFrame(0, true);
+  window.correction << 15, 10, -8, 5, 0.2, -0.05, 0;
+  window.relinearise();
+  const PinholeRadtan camera = window.correctedCamera();
+  const auto expectAt = [&](const NormalisedObservation& o, const Eigen::Vector2d& px) {
+    EXPECT_LT((o.corrected(window.correction.data()) - camera.normalise(px)).norm(), 1e-9);
+  };
+  const PointTrack& point = window.points.at(7);
+  const LineTrack& line = window.lines.at(9);
+  ASSERT_EQ(point.sightings.size() + point.former.size(), 4u);
+  ASSERT_EQ(line.sightings.size() + line.former.size(), 4u);
+  for (const auto* sightings : {&point.sightings, &point.former})
+    for (const PointSighting& s : *sightings) expectAt(s.observation, s.px);
+  for (const auto* sightings : {&line.sightings, &line.former})
+    for (const LineSighting& s : *sightings) {
+      expectAt(s.start, s.start_px);
+      expectAt(s.end, s.end_px);
+    }
+}
+
 TEST(MakeObservation, CorrectionJacobianIsTheNumericOne) {
   const PinholeRadtan camera = eurocRig().camera;
   for (const Eigen::Vector2d& px : {Eigen::Vector2d(370, 250), Eigen::Vector2d(40, 60), Eigen::Vector2d(700, 430)}) {
-    const NormalisedObservation o = makeObservation(camera, camera.normalise(px));
+    const NormalisedObservation o = makeObservation(camera, px);
     const auto normalisedWith = [&](const CorrectionBlock& c) -> Eigen::Vector2d {
       return correctedCamera(camera, c.data()).normalise(px);
     };

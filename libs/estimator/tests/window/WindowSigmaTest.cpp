@@ -12,7 +12,7 @@ namespace {
 
 using namespace test;
 
-SlidingWindow flownWindow() {
+SlidingWindow flownWithNoise() {
   TrackSimulationParams tracks;
   tracks.duration_s = 4;
   tracks.max_points_per_frame = 40;
@@ -24,7 +24,7 @@ SlidingWindow flownWindow() {
 }
 
 TEST(WindowSigma, ObservationsNarrowThePriorAndNothingWidensIt) {
-  const SlidingWindow window = flownWindow();
+  const SlidingWindow window = flownWithNoise();
   const EstimatorParams params;
   const WindowSigma all = windowSigma(window, params, window.T_b_c());
   const CalibrationSigma& sigma = all.calibration;
@@ -47,7 +47,7 @@ TEST(WindowSigma, ObservationsNarrowThePriorAndNothingWidensIt) {
 }
 
 TEST(WindowSigma, WhatIsHeldHasNone) {
-  const SlidingWindow window = flownWindow();
+  const SlidingWindow window = flownWithNoise();
   EstimatorParams params;
   params.calibration.refine_extrinsics = params.calibration.refine_camera = params.calibration.refine_time_offset =
       false;

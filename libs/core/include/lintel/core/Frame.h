@@ -25,6 +25,7 @@ struct ImuSample {
   std::int64_t t_ns = 0;
   Eigen::Vector3d gyro = Eigen::Vector3d::Zero();   ///< angular rate [rad/s]
   Eigen::Vector3d accel = Eigen::Vector3d::Zero();  ///< specific force [m/s^2]
+  bool bridged = false;  ///< the time since the sample before lies in a drop-out: interpolated, not measured
 };
 
 /// The IMU samples from one frame's time to the next one's, both ends included (interpolated linearly where no sample

@@ -44,6 +44,7 @@ struct CalibrationParams {
   double centre_sigma_px = 1.0;
   double distortion_sigma = 0.003;
   double time_offset_sigma_s = 0.002;
+  double loss_width = 3;  ///< Cauchy width of each part's prior, in standard deviations
 
   template <class F>
   void fields(F&& field) {
@@ -56,6 +57,7 @@ struct CalibrationParams {
     field("centre_sigma_px", centre_sigma_px, ReferencePixels{1e-9, 1000});
     field("distortion_sigma", distortion_sigma, Range{1e-9, 10});
     field("time_offset_sigma_s", time_offset_sigma_s, Range{1e-9, 1});
+    field("loss_width", loss_width, Range{0.1, 1000000});
   }
 };
 
@@ -164,7 +166,9 @@ struct EstimatorParams {
   int keyframe_min_tracked = 20;        ///< fewer points shared with the last keyframe make a new one
   double max_keyframe_interval_s = 10;  ///< a keyframe at least this often, also at rest
   int max_iterations = 8;
+  bool detect_rest = true;            ///< by points, IMU and speed; a frame at rest gets a zero-velocity observation
   double rest_disparity_px = 0.25;    ///< median motion between window frames below which rest is assumed
+  double rest_speed = 0.05;           ///< estimated speed above which it is not [m/s]
   double rest_velocity_sigma = 0.01;  ///< zero-velocity observation at rest [m/s]
   FactorParams factors;
   CalibrationParams calibration;
@@ -181,7 +185,9 @@ struct EstimatorParams {
     field("keyframe_min_tracked", keyframe_min_tracked, Range{1, 10000});
     field("max_keyframe_interval_s", max_keyframe_interval_s, Range{0.1, 1000000});
     field("max_iterations", max_iterations, Range{1, 1000});
+    field("detect_rest", detect_rest);
     field("rest_disparity_px", rest_disparity_px, Range{0, 100});
+    field("rest_speed", rest_speed, Range{0, 100});
     field("rest_velocity_sigma", rest_velocity_sigma, Range{1e-6, 10});
     field("factors", factors);
     field("calibration", calibration);

@@ -141,6 +141,9 @@ class SlidingWindow {
   /// Appends a frame and its tracks.
   void addFrame(WindowFrame frame, const FrameTracks& tracks);
 
+  /// Linearises the observations about the present correction, when it has left what they are linear within.
+  void relinearise();
+
   /// Forgets a frame and its sightings (keeping them in `former` when it was a keyframe). Tracks keep their estimate.
   /// Does not touch priors.
   void removeFrame(FrameId id, bool keyframe);
@@ -152,6 +155,7 @@ class SlidingWindow {
 
  private:
   PinholeRadtan camera_;
+  CorrectionBlock linearised_at_ = CorrectionBlock::Zero();
 };
 
 }  // namespace lintel

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <memory>
+#include <vector>
 
 #include "lintel/estimator/EstimatorParams.h"
 #include "lintel/factors/PriorFactors.h"
@@ -16,11 +17,21 @@ namespace lintel {
 /// Ties position and yaw of a pose block to what they are: the four directions that no measurement sees.
 std::unique_ptr<PriorFactor> makeGaugePrior(const PoseBlock& pose);
 
-/// The extrinsics T_b_c, to within their sigmas about the calibrated ones; held where they are not refined.
-std::unique_ptr<PriorFactor> makeExtrinsicsPrior(const CalibrationParams& params, const Pose& T_b_c_calibrated);
+/// The params for this camera: lengths in its pixels; a distortion that is zero throughout is taken as not known, not
+/// as measured.
+EstimatorParams paramsFor(const PinholeRadtan& camera, const EstimatorParams& params);
 
-/// The correction of intrinsics and time offset, about zero; held in the parts that are not refined.
-std::unique_ptr<PriorFactor> makeCorrectionPrior(const CalibrationParams& params);
+/// What belongs together in a calibration is right or wrong together, so each part is a prior of its own under a robust
+/// loss (CalibrationParams::loss_width).
+using PriorParts = std::vector<std::unique_ptr<PriorFactor>>;
+
+/// The extrinsics T_b_c, to within their sigmas about the calibrated ones: position, rotation. Held, as one part, where
+/// they are not refined.
+PriorParts makeExtrinsicsPriors(const CalibrationParams& params, const Pose& T_b_c_calibrated);
+
+/// The correction about zero: focal lengths, image centre, distortion, time offset; held in the parts that are not
+/// refined.
+PriorParts makeCorrectionPriors(const CalibrationParams& params);
 
 /// Zero velocity of a body at rest, to within `velocity_sigma` [m/s]; a motion block.
 std::unique_ptr<PriorFactor> makeRestPrior(double velocity_sigma);

@@ -9,14 +9,15 @@
 
 namespace lintel {
 
-/// An image observation on the normalised plane and how it moves with the camera correction.
+/// An image observation on the normalised plane and how it moves with the camera correction, about one correction.
 struct NormalisedObservation {
   Eigen::Vector2d position = Eigen::Vector2d::Zero();  ///< (x/z, y/z)
   ObservationJacobian correction_jacobian = ObservationJacobian::Zero();
+  CorrectionBlock linearised_at = CorrectionBlock::Zero();
 
   /// The observation under a correction, to first order.
   Eigen::Vector2d corrected(const double* correction) const {
-    return position + correction_jacobian * Eigen::Map<const CorrectionBlock>(correction);
+    return position + correction_jacobian * (Eigen::Map<const CorrectionBlock>(correction) - linearised_at);
   }
 };
 
@@ -25,20 +26,23 @@ struct NormalisedObservation {
 /// the focal length, and every line would pull at it.
 struct LineEnd : NormalisedObservation {
   using Row = Eigen::Matrix<double, 1, kCorrectionSize>;
-  double calibrated_scale_px = 1;        ///< with the calibrated camera
+  double linearised_scale_px = 1;        ///< at `linearised_at`
   Row log_scale_jacobian = Row::Zero();  ///< d log scale / d correction
 
   /// Under a correction, to first order [px].
   double scale_px(const double* correction) const {
-    return calibrated_scale_px * (1 + log_scale_jacobian.dot(Eigen::Map<const CorrectionBlock>(correction)));
+    return linearised_scale_px *
+           (1 + log_scale_jacobian.dot(Eigen::Map<const CorrectionBlock>(correction) - linearised_at));
   }
 };
 
-/// How an observation depends on the camera correction (intrinsics, by the camera model).
-NormalisedObservation makeObservation(const PinholeRadtan& camera, const Eigen::Vector2d& normalised);
+/// How an observed pixel depends on the camera correction (intrinsics, by the camera model), about `correction`.
+NormalisedObservation makeObservation(const PinholeRadtan& calibrated, const Eigen::Vector2d& px,
+                                      const CorrectionBlock& correction = CorrectionBlock::Zero());
 
-/// The two end points of an observed line; their scales are across the line through both.
-std::pair<LineEnd, LineEnd> makeLineEnds(const PinholeRadtan& camera, const Eigen::Vector2d& start_normalised,
-                                         const Eigen::Vector2d& end_normalised);
+/// The two end points of an observed line [px]; their scales are across the line through both.
+std::pair<LineEnd, LineEnd> makeLineEnds(const PinholeRadtan& calibrated, const Eigen::Vector2d& start_px,
+                                         const Eigen::Vector2d& end_px,
+                                         const CorrectionBlock& correction = CorrectionBlock::Zero());
 
 }  // namespace lintel

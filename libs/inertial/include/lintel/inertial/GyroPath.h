@@ -15,7 +15,7 @@ class GyroPath {
  public:
   explicit GyroPath(const ImuBatch& imu);
 
-  /// Whether there are samples from one time to another, without a gap of more than 50 ms.
+  /// Whether there are samples from one time to another, without a gap of more than 50 ms, bridged or not.
   bool covers(std::int64_t from_ns, std::int64_t to_ns) const;
 
   /// Rotation from the body at a time within the samples to the body at the first one.

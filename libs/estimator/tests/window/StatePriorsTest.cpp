@@ -1,0 +1,63 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "lintel/estimator/StatePriors.h"
+
+#include <gtest/gtest.h>
+
+#include "TestWindow.h"
+#include "lintel/geometry/Rotation.h"
+
+namespace lintel {
+namespace {
+
+using namespace test;
+
+/// Squared residuals of all parts at a block.
+double squaredAt(const PriorParts& parts, const double* block) {
+  double sum = 0;
+  for (const auto& part : parts) {
+    Eigen::VectorXd r(part->num_residuals());
+    EXPECT_TRUE(part->Evaluate(&block, r.data(), nullptr));
+    sum += r.squaredNorm();
+  }
+  return sum;
+}
+
+TEST(CalibrationPriors, TogetherAreOverEveryParameterOnce) {
+  const CalibrationParams p;
+  CorrectionBlock correction;
+  correction << p.focal_sigma_px, -p.focal_sigma_px, p.centre_sigma_px, p.centre_sigma_px, p.distortion_sigma,
+      p.distortion_sigma, p.time_offset_sigma_s;
+  EXPECT_NEAR(squaredAt(makeCorrectionPriors(p), correction.data()), kCorrectionSize, 1e-9);
+  const Pose T = eurocRig().T_b_c;
+  const double a = p.extrinsic_rotation_sigma_rad, b = p.extrinsic_translation_sigma_m;
+  const PoseBlock moved = toBlock({T.q * expRotation({a, -a, a}), T.p + Eigen::Vector3d(b, b, -b)});
+  EXPECT_NEAR(squaredAt(makeExtrinsicsPriors(p, T), moved.data()), 6, 1e-3);
+}
+
+TEST(CalibrationPriors, APartThatIsWrongLeavesTheOthersAlone) {
+  const auto parts = makeCorrectionPriors({});
+  ASSERT_EQ(parts.size(), 4u);
+  CorrectionBlock distortion = CorrectionBlock::Zero();
+  distortion[4] = 0.2;
+  int touched = 0;
+  for (const auto& part : parts) {
+    Eigen::VectorXd r(part->num_residuals());
+    const double* block = distortion.data();
+    ASSERT_TRUE(part->Evaluate(&block, r.data(), nullptr));
+    touched += r.norm() > 0;
+  }
+  EXPECT_EQ(touched, 1);
+}
+
+TEST(ParamsFor, ADistortionOfZeroIsNotKnown) {
+  PinholeRadtan camera = eurocRig().camera;
+  EstimatorParams params;
+  EXPECT_EQ(paramsFor(camera, params).calibration.distortion_sigma, params.calibration.distortion_sigma);
+  camera.k1 = camera.k2 = camera.p1 = camera.p2 = 0;
+  EXPECT_EQ(paramsFor(camera, params).calibration.distortion_sigma, 0.1);
+  params.calibration.distortion_sigma = 0.3;
+  EXPECT_EQ(paramsFor(camera, params).calibration.distortion_sigma, 0.3);
+}
+
+}  // namespace
+}  // namespace lintel
