@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "StepProducer.h"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
@@ -47,6 +48,11 @@ std::shared_ptr<const GrayImage> StepProducer::decode(const FrameRef& ref) {
 
 ImuBatch StepProducer::imuOf(std::int64_t t_ns) {
   ImuBatch batch = previous_ns_ ? imu_.between(*previous_ns_, t_ns) : imu_.before(t_ns);
+  const auto bridged = std::find_if(batch.begin(), batch.end(), [](const ImuSample& s) { return s.bridged; });
+  if (bridged != batch.end() && !bridging_)
+    warn(Fault::ImuBridged,
+         stream_->path() + ": the IMU has a drop-out at " + secondsText(bridged->t_ns) + ": bridged");
+  bridging_ = !batch.empty() && batch.back().bridged;
   if (!batch.empty()) {
     ++with_imu_;
   } else if (previous_ns_) {

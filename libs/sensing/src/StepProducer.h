@@ -41,6 +41,7 @@ class StepProducer {
   std::int64_t last_seen_ns_ = 0;
   std::size_t delivered_ = 0, with_imu_ = 0, unreadable_ = 0;
   std::string first_unreadable_;
+  bool bridging_ = false;  ///< the last batch ended in a drop-out
 };
 
 }  // namespace lintel

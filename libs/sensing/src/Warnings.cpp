@@ -20,6 +20,8 @@ const char* nameOf(Fault fault) {
       return "incomplete lines";
     case Fault::ImuGap:
       return "frames without IMU";
+    case Fault::ImuBridged:
+      return "drop-outs of the IMU";
     case Fault::Calibration:
       return "calibration faults";
     case Fault::Other:

@@ -24,6 +24,11 @@ class EurocFaultsTest : public testing::Test {
     return text.substr(begin, text.find('\n', begin) + 1 - begin);
   }
 
+  void cutImu(const std::string& from, const std::string& to) {
+    const std::string text = bytesOf(imu_ + "/data.csv");
+    writeText(imu_ + "/data.csv", text.substr(0, text.find(from)) + text.substr(text.find(to)));
+  }
+
   TempFolder folder_;
   std::string root_ = folder_ / "flight", camera_ = root_ + "/mav0/cam0", imu_ = root_ + "/mav0/imu0";
 };
@@ -159,10 +164,23 @@ TEST_F(EurocFaultsTest, NonFiniteSamplesAreSkipped) {
     for (const ImuSample& sample : step.imu) EXPECT_TRUE(sample.gyro.allFinite() && sample.accel.allFinite());
 }
 
-TEST_F(EurocFaultsTest, ADropOutLeavesBatchesEmpty) {
-  const std::string text = bytesOf(imu_ + "/data.csv"), from = imuLine(0.5), to = imuLine(0.7);
-  const std::size_t begin = text.find(from);
-  writeText(imu_ + "/data.csv", text.substr(0, begin) + text.substr(text.find(to)));
+TEST_F(EurocFaultsTest, AShortDropOutIsBridged) {
+  const std::string from = imuLine(0.5), to = imuLine(0.7);
+  cutImu(from, to);
+  const Everything all = readAll(root_);
+  ASSERT_EQ(all.steps.size(), 20u);
+  for (std::size_t i = 1; i < all.steps.size(); ++i) {
+    const auto& imu = all.steps[i].imu;
+    ASSERT_FALSE(imu.empty()) << i;
+    const bool inside = all.steps[i].frame.t_ns > std::stoll(from) && all.steps[i].frame.t_ns < std::stoll(to);
+    EXPECT_EQ(imu.back().bridged, inside) << i;
+  }
+  EXPECT_THAT(all.warnings, ElementsAre(HasSubstr("the IMU has a drop-out")));
+}
+
+TEST_F(EurocFaultsTest, ALongDropOutLeavesBatchesEmpty) {
+  const std::string from = imuLine(0.2), to = imuLine(0.8);
+  cutImu(from, to);
   const Everything all = readAll(root_);
   ASSERT_EQ(all.steps.size(), 20u);
   const std::int64_t lost_from = std::stoll(from), lost_to = std::stoll(to);
