@@ -24,7 +24,11 @@ constexpr double kLargestFocalChange = 0.05, kLargestTurn_rad = 0.12, kLargestMo
 
 // Squared misfits of the IMU between keyframes have nine degrees of freedom: a median of 8.3, or 25 times as much where
 // the IMU errs five times as much as its noise says (vibration).
-constexpr double kLargestImuMisfit = 25 * 8.3;
+constexpr double kExpectedMisfit = 8.3;
+constexpr double kLargestImuMisfit = 25 * kExpectedMisfit;
+// Less is enough where other axes of the accelerometer would fit gravity so much better: motion alone makes it up
+// to 1.7.
+constexpr double kSuspectImuMisfit = 2 * kExpectedMisfit, kOtherAxesFit = 2.5;
 
 std::string calibrationFault(const Rig& given, const Rig& estimated) {
   const double focal = estimated.camera.meanFocal() / given.camera.meanFocal() - 1;
@@ -116,10 +120,12 @@ std::string RunCheck::symptom(const OdometryStatistics& s, const Rig& estimated)
     return text;
   }
   if (std::vector<double> misfits = imu_misfits_; !misfits.empty()) {
-    if (const double misfit = upperQuantile(misfits, 0.5); !(misfit < kLargestImuMisfit)) {
+    const double misfit = upperQuantile(misfits, 0.5);
+    const bool other_axes = accelerometer_.axesMisfit() > kOtherAxesFit;
+    if (!(misfit < (other_axes ? kSuspectImuMisfit : kLargestImuMisfit))) {
       std::snprintf(text, sizeof text,
-                    "images and IMU contradict each other: the IMU is off by %.0f times its noise between keyframes",
-                    std::sqrt(misfit / 8.3));
+                    "images and IMU contradict each other: the IMU is off by %.1f times its noise between keyframes",
+                    std::sqrt(misfit / kExpectedMisfit));
       return text;
     }
   }

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <memory>
 #include <vector>
@@ -87,6 +88,50 @@ TEST(RunCheck, ACalibrationThatTheEstimateLeft) {
 TEST(RunCheck, ImagesThatContradictTheImu) {
   EXPECT_EQ(verdictOf(9.81, 0, 0, 1, givenRig(), 1e-4), "");
   EXPECT_NE(verdictOf(9.81, 0, 0, 1, givenRig(), 0.1).find("images and IMU contradict each other"), std::string::npos);
+}
+
+/// Half a minute of turning about x; each second keyframe jumps.
+std::string verdictWithAccelerometer(bool swapped, double jump_m) {
+  RunCheck check{givenRig()};
+  OdometryStatistics statistics;
+  std::vector<std::uint8_t> pixels;
+  for (int k = 0; k < 64 * 64; ++k) pixels.push_back(static_cast<std::uint8_t>(37 * k % 251));
+  for (int frame = 0; frame < 300; ++frame) {
+    TrackedFrame tracked;
+    std::rotate(pixels.begin(), pixels.begin() + 5, pixels.end());
+    tracked.step.frame.image = std::make_shared<GrayImage>(GrayImage{64, 64, pixels});
+    for (int i = 0; i <= 20; ++i) {
+      const double t_s = 0.1 * frame + 0.005 * i, angle = 1.2 * std::sin(0.7 * t_s);
+      const Eigen::Vector3d g(0, 9.81 * std::sin(angle), 9.81 * std::cos(angle));
+      tracked.step.imu.push_back({std::llround(1e9 * t_s),
+                                  {0.84 * std::cos(0.7 * t_s), 0, 0},
+                                  swapped ? Eigen::Vector3d(g.x(), g.z(), g.y()) : g});
+    }
+    WindowUpdate update;
+    update.t_ns = tracked.step.imu.back().t_ns;
+    update.status = EstimatorStatus::kTracking;
+    RetiredKeyframe keyframe;
+    keyframe.T_w_b.p.y() = frame % 2 ? jump_m : 0;
+    ImuBatch level;  // what the estimate makes of it
+    for (const ImuSample& sample : tracked.step.imu) level.push_back({sample.t_ns, {0, 0, 0}, {0, 0, 9.81}});
+    auto integrated = std::make_shared<Preintegration>(ImuBias{}, ImuNoise{});
+    integrated->append(level);
+    keyframe.imu = integrated;
+    update.keyframes.push_back(keyframe);
+    check.add(tracked, update);
+    ++statistics.frames;
+  }
+  statistics.last_frame_ns = 30'000'000'000;
+  statistics.first_pose_s = 0;
+  statistics.frames_with_pose = 300;
+  return check.verdict(statistics, givenRig());
+}
+
+TEST(RunCheck, InterchangedAxesOfTheAccelerometerThatTheEstimateCouldNearlyFollow) {
+  constexpr double kJump_m = 0.00022;
+  EXPECT_EQ(verdictWithAccelerometer(false, kJump_m), "");
+  const std::string verdict = verdictWithAccelerometer(true, kJump_m);
+  EXPECT_NE(verdict.find("columns"), std::string::npos) << verdict;
 }
 
 TEST(RunCheck, StartsThatDoNotLast) { EXPECT_NE(verdictOf(9.81, 0, 2, 0.2).find("did not last"), std::string::npos); }
