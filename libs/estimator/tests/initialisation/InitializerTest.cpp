@@ -20,7 +20,7 @@ class InitializerTest : public testing::Test {
 };
 
 TrackedFlight noisyFlight(double noise_px, const ImuSimulatorParams& imu, double duration_s = 4,
-                     const Trajectory& trajectory = FigureTrajectory()) {
+                          const Trajectory& trajectory = FigureTrajectory()) {
   TrackSimulationParams tracks;
   tracks.duration_s = duration_s;
   tracks.point_noise_px = noise_px;

@@ -12,7 +12,6 @@ namespace {
 
 using namespace test;
 
-
 /// How far a segment's ends are from the track's line [m].
 double distanceOf(const LineTrack& track, const Segment3& segment_w) {
   const PluckerLine line = lineInWorld(track);

@@ -22,7 +22,6 @@ namespace {
 
 using namespace test;
 
-
 /// Height of the body above a plane of constant height: r = weight (z - height). Block: pose.
 class HeightFactor final : public ceres::SizedCostFunction<1, kPoseSize> {
  public:

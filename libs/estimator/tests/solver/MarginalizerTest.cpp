@@ -20,7 +20,6 @@ namespace {
 
 using namespace test;
 
-
 std::set<BlockKey> firstFrameAndPoints(const SlidingWindow& window) {
   std::set<BlockKey> dropped{{BlockKey::kPose, 0}, {BlockKey::kMotion, 0}};
   for (const auto& [id, track] : window.points)

@@ -16,7 +16,6 @@ namespace {
 
 using namespace test;
 
-
 /// A window off its optimum with points, lines, and lines tied to a shared direction.
 class ReducedSystemTest : public testing::Test {
  protected:

@@ -16,7 +16,6 @@ namespace {
 
 using namespace test;
 
-
 SlidingWindow disturbedWindow() {
   TrackSimulationParams tracks;
   tracks.duration_s = 2;

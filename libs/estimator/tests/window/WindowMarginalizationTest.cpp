@@ -16,7 +16,6 @@ namespace {
 
 using namespace test;
 
-
 bool touches(const WindowPrior& prior, BlockKey::Kind kind, std::uint64_t id) {
   return std::find(prior.blocks.begin(), prior.blocks.end(), BlockKey{kind, id}) != prior.blocks.end();
 }
