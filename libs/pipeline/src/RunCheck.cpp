@@ -25,6 +25,7 @@ constexpr double kLargestFocalChange = 0.05, kLargestTurn_rad = 0.12, kLargestMo
 // Squared misfits of the IMU between keyframes have nine degrees of freedom: a median of 8.3, or 25 times as much where
 // the IMU errs five times as much as its noise says (vibration).
 constexpr double kExpectedMisfit = 8.3;
+constexpr std::size_t kLeastMisfits = 50;  // in the first seconds biases and calibration have not settled
 constexpr double kLargestImuMisfit = 25 * kExpectedMisfit;
 // Less is enough where other axes of the accelerometer would fit gravity so much better: motion alone makes it up
 // to 1.7.
@@ -119,7 +120,7 @@ std::string RunCheck::symptom(const OdometryStatistics& s, const Rig& estimated)
                   s.resets + 1, 100 * static_cast<double>(s.frames_with_pose) / static_cast<double>(s.frames));
     return text;
   }
-  if (std::vector<double> misfits = imu_misfits_; !misfits.empty()) {
+  if (std::vector<double> misfits = imu_misfits_; misfits.size() >= kLeastMisfits) {
     const double misfit = upperQuantile(misfits, 0.5);
     const bool other_axes = accelerometer_.axesMisfit() > kOtherAxesFit;
     if (!(misfit < (other_axes ? kSuspectImuMisfit : kLargestImuMisfit))) {
