@@ -285,6 +285,7 @@ void Estimator::Impl::fail(const std::string& reason, WindowUpdate& update) {
     window_.extrinsics = toBlock(rig_.T_b_c);
     window_.correction.setZero();
   }
+  window_.relinearise();  // what comes in is linearised about what is kept
   tracking_ = false;
   pending_imu_.clear();
 }

@@ -133,19 +133,16 @@ void BatchProblem::placeBlocks() {
 }
 
 void BatchProblem::addPriors() {
-  const auto add = [&](std::unique_ptr<ceres::CostFunction> cost, std::size_t block) {
-    problem_->AddResidualBlock(cost.get(), nullptr, at(block));
+  const auto add = [&](std::unique_ptr<ceres::CostFunction> cost, std::size_t block,
+                       ceres::LossFunction* loss = nullptr) {
+    problem_->AddResidualBlock(cost.get(), loss, at(block));
     priors_.push_back(std::move(cost));
   };
-  const auto addPart = [&](std::unique_ptr<ceres::CostFunction> cost, std::size_t block, bool refined) {
-    problem_->AddResidualBlock(cost.get(), refined ? &calibration_loss_ : nullptr, at(block));
-    priors_.push_back(std::move(cost));
+  const auto addParts = [&](PriorParts parts, std::size_t block) {
+    for (PriorPart& part : parts) add(std::move(part.factor), block, part.refined ? &calibration_loss_ : nullptr);
   };
-  const CalibrationParams& calibration = estimator_.calibration;
-  for (auto& part : makeExtrinsicsPriors(calibration, calibrated_.T_b_c))
-    addPart(std::move(part), extrinsics_at_, calibration.refine_extrinsics);
-  for (auto& part : makeCorrectionPriors(calibration))
-    addPart(std::move(part), correction_at_, calibration.refine_camera);
+  addParts(makeExtrinsicsPriors(estimator_.calibration, calibrated_.T_b_c), extrinsics_at_);
+  addParts(makeCorrectionPriors(estimator_.calibration), correction_at_);
   for (std::size_t k = 0; k < material_.keyframes.size(); ++k) {
     const RetiredKeyframe& keyframe = material_.keyframes[k];
     if (keyframe.at_rest) add(makeRestPrior(estimator_.rest_velocity_sigma), motionAt(k));

@@ -120,17 +120,21 @@ std::string RunCheck::symptom(const OdometryStatistics& s, const Rig& estimated)
                   s.resets + 1, 100 * static_cast<double>(s.frames_with_pose) / static_cast<double>(s.frames));
     return text;
   }
-  if (std::vector<double> misfits = imu_misfits_; misfits.size() >= kLeastMisfits) {
-    const double misfit = upperQuantile(misfits, 0.5);
-    const bool other_axes = accelerometer_.axesMisfit() > kOtherAxesFit;
-    if (!(misfit < (other_axes ? kSuspectImuMisfit : kLargestImuMisfit))) {
-      std::snprintf(text, sizeof text,
-                    "images and IMU contradict each other: the IMU is off by %.1f times its noise between keyframes",
-                    std::sqrt(misfit / kExpectedMisfit));
-      return text;
-    }
-  }
-  return calibrationFault(rig_, estimated);
+  const std::string fault = imuFault();
+  return fault.empty() ? calibrationFault(rig_, estimated) : fault;
+}
+
+std::string RunCheck::imuFault() const {
+  std::vector<double> misfits = imu_misfits_;
+  if (misfits.size() < kLeastMisfits) return {};
+  const double misfit = upperQuantile(misfits, 0.5);
+  const bool other_axes = accelerometer_.axesMisfit() > kOtherAxesFit;
+  if (misfit < (other_axes ? kSuspectImuMisfit : kLargestImuMisfit)) return {};
+  char text[200];
+  std::snprintf(text, sizeof text,
+                "images and IMU contradict each other: the IMU is off by %.1f times its noise between keyframes",
+                std::sqrt(misfit / kExpectedMisfit));
+  return text;
 }
 
 std::string RunCheck::cause() const {

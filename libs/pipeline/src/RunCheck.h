@@ -48,6 +48,8 @@ class RunCheck {
   void watchImu(const WindowUpdate& update);
   /// Of an estimate that is wrong; empty: none.
   std::string symptom(const OdometryStatistics& statistics, const Rig& estimated) const;
+  /// Where the residuals of the IMU are too large for its noise; empty: nowhere.
+  std::string imuFault() const;
   std::string cause() const;  ///< what may be behind it; empty: unknown
 
   Rig rig_;

@@ -17,12 +17,13 @@ std::unique_ptr<PriorFactor> makeMotionPrior(const MotionBlock& sigma) {
 }
 
 /// On the `size` tangent components from `at` alone.
-std::unique_ptr<PriorFactor> makePartPrior(std::shared_ptr<const StateManifold> manifold, const Eigen::VectorXd& x_0,
-                                           int at, int size, double sigma) {
+PriorPart makePart(std::shared_ptr<const StateManifold> manifold, const Eigen::VectorXd& x_0, int at, int size,
+                   bool refined, double sigma) {
   Eigen::MatrixXd A = Eigen::MatrixXd::Zero(size, manifold->TangentSize());
   A.middleCols(at, size).setIdentity();
   std::vector<PriorBlock> blocks{{std::move(manifold), x_0}};
-  return std::make_unique<PriorFactor>(std::move(blocks), A / sigma, Eigen::VectorXd::Zero(size));
+  A /= refined ? sigma : kHeld;
+  return {std::make_unique<PriorFactor>(std::move(blocks), A, Eigen::VectorXd::Zero(size)), refined};
 }
 
 }  // namespace
@@ -47,9 +48,8 @@ PriorParts makeExtrinsicsPriors(const CalibrationParams& p, const Pose& T_b_c_ca
   const PoseBlock calibrated = toBlock(T_b_c_calibrated);
   const auto manifold = std::make_shared<PoseManifold>();
   PriorParts parts;
-  const auto add = [&](int at, double sigma) { parts.push_back(makePartPrior(manifold, calibrated, at, 3, sigma)); };
-  add(0, p.refine_extrinsics ? p.extrinsic_translation_sigma_m : kHeld);
-  add(3, p.refine_extrinsics ? p.extrinsic_rotation_sigma_rad : kHeld);
+  parts.push_back(makePart(manifold, calibrated, 0, 3, p.refine_extrinsics, p.extrinsic_translation_sigma_m));
+  parts.push_back(makePart(manifold, calibrated, 3, 3, p.refine_extrinsics, p.extrinsic_rotation_sigma_rad));
   return parts;
 }
 
@@ -57,13 +57,10 @@ PriorParts makeCorrectionPriors(const CalibrationParams& p) {
   const CorrectionBlock zero = CorrectionBlock::Zero();
   const auto manifold = std::make_shared<VectorManifold>(kCorrectionSize);
   PriorParts parts;
-  const auto add = [&](int at, int size, double sigma) {
-    parts.push_back(makePartPrior(manifold, zero, at, size, sigma));
-  };
-  add(0, 2, p.refine_camera ? p.focal_sigma_px : kHeld);
-  add(2, 2, p.refine_camera ? p.centre_sigma_px : kHeld);
-  add(4, 2, p.refine_camera ? p.distortion_sigma : kHeld);
-  add(kTimeOffsetAt, 1, p.refine_time_offset ? p.time_offset_sigma_s : kHeld);
+  parts.push_back(makePart(manifold, zero, 0, 2, p.refine_camera, p.focal_sigma_px));
+  parts.push_back(makePart(manifold, zero, 2, 2, p.refine_camera, p.centre_sigma_px));
+  parts.push_back(makePart(manifold, zero, 4, 2, p.refine_camera, p.distortion_sigma));
+  parts.push_back(makePart(manifold, zero, kTimeOffsetAt, 1, p.refine_time_offset, p.time_offset_sigma_s));
   return parts;
 }
 

@@ -42,10 +42,12 @@ void WindowFactors::addPriors() {
 
 void WindowFactors::addCalibrationPriors(const CalibrationParams& params, const Pose& T_b_c_calibrated) {
   calibration_loss_ = std::make_unique<ceres::CauchyLoss>(params.loss_width);
-  for (auto& part : makeExtrinsicsPriors(params, T_b_c_calibrated))
-    add(std::move(part), {{BlockKey::kExtrinsics, 0}}, params.refine_extrinsics ? calibration_loss_.get() : nullptr);
-  for (auto& part : makeCorrectionPriors(params))
-    add(std::move(part), {{BlockKey::kCorrection, 0}}, params.refine_camera ? calibration_loss_.get() : nullptr);
+  const auto addParts = [&](PriorParts parts, BlockKey::Kind kind) {
+    for (PriorPart& part : parts)
+      add(std::move(part.factor), {{kind, 0}}, part.refined ? calibration_loss_.get() : nullptr);
+  };
+  addParts(makeExtrinsicsPriors(params, T_b_c_calibrated), BlockKey::kExtrinsics);
+  addParts(makeCorrectionPriors(params), BlockKey::kCorrection);
 }
 
 void WindowFactors::addGauge() {

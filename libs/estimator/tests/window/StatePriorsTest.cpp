@@ -15,8 +15,8 @@ using namespace test;
 double squaredAt(const PriorParts& parts, const double* block) {
   double sum = 0;
   for (const auto& part : parts) {
-    Eigen::VectorXd r(part->num_residuals());
-    EXPECT_TRUE(part->Evaluate(&block, r.data(), nullptr));
+    Eigen::VectorXd r(part.factor->num_residuals());
+    EXPECT_TRUE(part.factor->Evaluate(&block, r.data(), nullptr));
     sum += r.squaredNorm();
   }
   return sum;
@@ -41,12 +41,26 @@ TEST(CalibrationPriors, APartThatIsWrongLeavesTheOthersAlone) {
   distortion[4] = 0.2;
   int touched = 0;
   for (const auto& part : parts) {
-    Eigen::VectorXd r(part->num_residuals());
+    Eigen::VectorXd r(part.factor->num_residuals());
     const double* block = distortion.data();
-    ASSERT_TRUE(part->Evaluate(&block, r.data(), nullptr));
+    ASSERT_TRUE(part.factor->Evaluate(&block, r.data(), nullptr));
     touched += r.norm() > 0;
   }
   EXPECT_EQ(touched, 1);
+}
+
+TEST(CalibrationPriors, WhatIsNotRefinedIsHeldWithoutARobustLoss) {
+  CalibrationParams p;
+  p.refine_time_offset = false;
+  const auto parts = makeCorrectionPriors(p);
+  ASSERT_EQ(parts.size(), 4u);
+  EXPECT_TRUE(parts[0].refined && parts[1].refined && parts[2].refined);
+  EXPECT_FALSE(parts[3].refined);
+  p.refine_time_offset = true;
+  p.refine_camera = false;
+  const auto others = makeCorrectionPriors(p);
+  EXPECT_FALSE(others[0].refined || others[1].refined || others[2].refined);
+  EXPECT_TRUE(others[3].refined);
 }
 
 TEST(ParamsFor, ADistortionOfZeroIsNotKnown) {

@@ -21,16 +21,18 @@ std::unique_ptr<PriorFactor> makeGaugePrior(const PoseBlock& pose);
 /// as measured.
 EstimatorParams paramsFor(const PinholeRadtan& camera, const EstimatorParams& params);
 
-/// What belongs together in a calibration is right or wrong together, so each part is a prior of its own under a robust
-/// loss (CalibrationParams::loss_width).
-using PriorParts = std::vector<std::unique_ptr<PriorFactor>>;
+/// What belongs together in a calibration is right or wrong together, so each part is a prior of its own. A part that
+/// is refined takes a robust loss (CalibrationParams::loss_width); one that is not is held and takes none.
+struct PriorPart {
+  std::unique_ptr<PriorFactor> factor;
+  bool refined = true;
+};
+using PriorParts = std::vector<PriorPart>;
 
-/// The extrinsics T_b_c, to within their sigmas about the calibrated ones: position, rotation. Held, as one part, where
-/// they are not refined.
+/// The extrinsics T_b_c, to within their sigmas about the calibrated ones: position, rotation.
 PriorParts makeExtrinsicsPriors(const CalibrationParams& params, const Pose& T_b_c_calibrated);
 
-/// The correction about zero: focal lengths, image centre, distortion, time offset; held in the parts that are not
-/// refined.
+/// The correction about zero: focal lengths, image centre, distortion, time offset.
 PriorParts makeCorrectionPriors(const CalibrationParams& params);
 
 /// Zero velocity of a body at rest, to within `velocity_sigma` [m/s]; a motion block.
