@@ -125,6 +125,26 @@ TEST(SlidingWindow, ObservationsFollowALargeCorrection) {
     }
 }
 
+TEST(SlidingWindow, WithinWhatIsNotLinearisedAnewTheFirstOrderIsGood) {
+  const PinholeRadtan camera = eurocRig().camera;
+  for (const Eigen::Vector2d& px : {Eigen::Vector2d(5, 5), Eigen::Vector2d(40, 60), Eigen::Vector2d(745, 475)})
+    for (const double sign : {-1.0, 1.0}) {
+      CorrectionBlock limit;  // the signs that add up
+      limit << -0.22, -0.22, 0.22, 0.22, -0.00074, -0.00074, 0;
+      limit *= sign;
+      const PinholeRadtan corrected = correctedCamera(camera, limit.data());
+      EXPECT_LT((corrected.toPixel(makeObservation(camera, px).corrected(limit.data())) - px).norm(), 0.05);
+      SlidingWindow window = sample();
+      const Eigen::Vector2d before = window.points.at(7).sightings[0].observation.position;
+      window.correction = limit;
+      window.relinearise();
+      EXPECT_EQ(window.points.at(7).sightings[0].observation.position, before) << "within the limits";
+      window.correction *= 1.1;
+      window.relinearise();
+      EXPECT_NE(window.points.at(7).sightings[0].observation.position, before) << "beyond them";
+    }
+}
+
 TEST(MakeObservation, CorrectionJacobianIsTheNumericOne) {
   const PinholeRadtan camera = eurocRig().camera;
   for (const Eigen::Vector2d& px : {Eigen::Vector2d(370, 250), Eigen::Vector2d(40, 60), Eigen::Vector2d(700, 430)}) {
