@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <map>
 #include <ostream>
+#include <stdexcept>
 #include <string>
 #include <vector>
 
@@ -51,6 +52,7 @@ class LintelMap {
       if (!viewerHint(extensionOf(output)).empty()) continue;
       throw UsageError("no form of export has the extension of " + output + "; take one of " + formats());
     }
+    checkOutputs();
     const ExportParams params = exportParams();
     const LineMap map = readMap(input_);
     for (const std::string& output : outputs_) report(exportMap(map, output, params));
@@ -71,6 +73,13 @@ class LintelMap {
            "  lintel-map map.lintel -o map.png --colour height       a picture: above, first camera, side\n"
            "  lintel-map map.lintel -o map.csv --min-observations 5  a table of the well-seen lines\n"
            "  lintel-map map.lintel -o map.obj --layers lines,trajectory --radius 0.01";
+  }
+
+  void checkOutputs() const {
+    if (overwrite_) return;
+    for (const std::string& output : outputs_)
+      if (std::filesystem::is_regular_file(output))
+        throw std::runtime_error(output + ": exists already; choose another name or add -w");
   }
 
   void addOptions() {
@@ -100,7 +109,8 @@ class LintelMap {
         .oneWord()
         .oneOf(namesOf(kLayers))
         .type("LAYERS");
-    line_.flag("--quiet,-q", quiet_, "Print nothing");
+    line_.flag("-w,--overwrite", overwrite_, "Replace files that exist already");
+    line_.flag("-q,--quiet", quiet_, "Print nothing");
   }
 
   ExportParams exportParams() const {
@@ -137,7 +147,7 @@ class LintelMap {
   std::string input_, style_, colour_ = "kind";
   std::vector<std::string> outputs_, layers_;
   ExportParams params_;
-  bool quiet_ = false;
+  bool overwrite_ = false, quiet_ = false;
 };
 
 }  // namespace

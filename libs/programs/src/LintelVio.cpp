@@ -14,6 +14,7 @@
 
 #include "CommandLine.h"
 #include "ProgramMain.h"
+#include "RecordingOptions.h"
 #include "lintel/core/AtomicFile.h"
 #include "lintel/exporting/MapExport.h"
 #include "lintel/pages/RunReport.h"
@@ -72,6 +73,7 @@ class LintelVio {
            "  lintel-vio MH_01_easy -o out                       an EuRoC folder (the one that holds mav0)\n"
            "  lintel-vio flight.rawlog -o out --export glb,ply   a rawlog\n"
            "  lintel-vio flight.rawlog -o out --from 10 --to 40  thirty seconds of it\n"
+           "  lintel-vio flight.rawlog -o out --calibration camchain-imucam.yaml --calibration imu.yaml   Kalibr's\n"
            "  lintel-vio flight.rawlog -o out --set features=points   points alone\n"
            "  lintel-vio --dump-config > my.yaml                 every option with its default";
   }
@@ -82,6 +84,7 @@ class LintelVio {
     line_.option("-o,--output", output_, "Folder to write to; made if it does not exist").type("OUT");
     line_.option("-c,--config", config_, "Configuration; what it leaves out keeps its default").type("CONFIG.yaml");
     line_.option("--set", settings_, "Set one option, e.g. --set estimator.keyframes=8").type("KEY=VALUE").repeatable();
+    addRecordingOptions(line_, recording_params_);
     line_.option("--from", recording_params_.from_s, "Start this long after the first frame [s]").notNegative();
     line_.option("--to", recording_params_.to_s, "Stop this long after the first frame [s]; 0 = at the end")
         .notNegative();

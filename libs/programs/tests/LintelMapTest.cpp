@@ -61,8 +61,16 @@ TEST_F(LintelMapTest, HeedsEveryOption) {
                  "0.5", "--as", "tubes", "--radius", "0.1", "--colour", "height", "--layers", "lines,trajectory"}),
             0);
   EXPECT_THAT(out_.str(), HasSubstr("map.csv: 1 lines; 2 lines left out by the filters"));
-  EXPECT_EQ(run({in("map.lintel"), "-o", in("map.csv"), "--quiet"}), 0);
+  EXPECT_EQ(run({in("map.lintel"), "-o", in("map.csv"), "--quiet", "-w"}), 0);
   EXPECT_EQ(out_.str(), "");
+}
+
+TEST_F(LintelMapTest, ReplacesFilesOnlyWhenAsked) {
+  EXPECT_EQ(run({in("map.lintel"), "-o", in("map.csv")}), 0);
+  EXPECT_EQ(run({in("map.lintel"), "-o", in("map.ply"), "-o", in("map.csv")}), 1);
+  EXPECT_THAT(err_.str(), HasSubstr("map.csv: exists already; choose another name or add -w"));
+  EXPECT_FALSE(exists("map.ply"));
+  EXPECT_EQ(run({in("map.lintel"), "-o", in("map.csv"), "-w"}), 0);
 }
 
 TEST_F(LintelMapTest, WrongUseIsTwo) {

@@ -11,11 +11,15 @@ void ignoreFault(Fault, const std::string&) {}
 
 }  // namespace
 
-EurocStream::EurocStream(const std::string& path, const RecordingParams& params)
+EurocStream::EurocStream(const std::string& path, const RecordingParams& params, const GivenCalibration& given)
     : mav0_(findMav0(path)),
       camera_folder_(mav0_ + "/" + (params.camera.empty() ? "cam0" : params.camera)),
       imu_folder_(mav0_ + "/" + (params.imu.empty() ? "imu0" : params.imu)),
-      rig_(rigOf(loadEurocCamera(camera_folder_ + "/sensor.yaml"), loadEurocImu(imu_folder_ + "/sensor.yaml"))),
+      rig_(given.rig(
+          [this] {
+            return rigOf(loadEurocCamera(camera_folder_ + "/sensor.yaml"), loadEurocImu(imu_folder_ + "/sensor.yaml"));
+          },
+          warnings_)),
       images_(camera_folder_),
       imu_(imu_folder_) {
   checkOverlap();

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "EurocFolder.h"
+#include "GivenCalibration.h"
 #include "SensorStream.h"
 
 namespace lintel {
@@ -10,10 +11,11 @@ namespace lintel {
 class EurocStream final : public SensorStream {
  public:
   /// Throws RecordingError.
-  EurocStream(const std::string& path, const RecordingParams& params);
+  EurocStream(const std::string& path, const RecordingParams& params, const GivenCalibration& given);
 
   const Rig& rig() const override { return rig_; }
   const std::string& path() const override { return mav0_; }
+  std::vector<Warning> openingWarnings() const override { return warnings_; }
   std::size_t countFrames(const RecordingParams& params) const override;
   std::optional<FrameRef> nextFrame(const WarningSink& warn) override;
   std::optional<ImuSample> nextImu(std::int64_t needed_ns, const WarningSink& warn) override;
@@ -22,6 +24,7 @@ class EurocStream final : public SensorStream {
   void checkOverlap() const;
 
   std::string mav0_, camera_folder_, imu_folder_;
+  std::vector<Warning> warnings_;
   Rig rig_;
   EurocImageList images_;
   EurocImuList imu_;

@@ -28,7 +28,4 @@ EurocImu loadEurocImu(const std::string& path);
 /// The rig of one camera and one IMU whose poses are given in the same vehicle frame.
 Rig rigOf(const EurocCamera& camera, const EurocImu& imu);
 
-/// Throws RecordingError naming `where` when no lens can have these values.
-void checkCamera(const PinholeRadtan& camera, const std::string& where);
-
 }  // namespace lintel

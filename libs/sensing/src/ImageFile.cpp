@@ -23,26 +23,33 @@ std::vector<std::uint8_t> bytesOf(const std::string& path) {
 
 }  // namespace
 
-GrayImage readGrayImage(const std::string& path) {
-  std::error_code ignored;
-  if (!std::filesystem::exists(path, ignored)) throw ImageFault(path + ": image file missing");
-  const std::vector<std::uint8_t> bytes = bytesOf(path);
+GrayImage grayImageOf(const cv::Mat& grey) {
+  GrayImage image;
+  image.width = grey.cols;
+  image.height = grey.rows;
+  image.pixels.reserve(grey.total());
+  for (int row = 0; row < grey.rows; ++row)
+    image.pixels.insert(image.pixels.end(), grey.ptr(row), grey.ptr(row) + grey.cols);
+  return image;
+}
+
+GrayImage decodeGrayImage(const std::vector<std::uint8_t>& bytes, const std::string& name) {
   if (auto image = decodeGrayPng(bytes)) return std::move(*image);
-  if (isDamagedPng(bytes)) throw ImageFault(path + ": not a complete image");
+  if (isDamagedPng(bytes)) throw ImageFault(name + ": not a complete image");
   cv::Mat decoded;
   try {
     if (!bytes.empty()) decoded = cv::imdecode(bytes, cv::IMREAD_GRAYSCALE);
   } catch (const cv::Exception&) {
     decoded.release();
   }
-  if (decoded.empty()) throw ImageFault(path + ": not a complete image");
-  GrayImage image;
-  image.width = decoded.cols;
-  image.height = decoded.rows;
-  image.pixels.reserve(decoded.total());
-  for (int row = 0; row < decoded.rows; ++row)
-    image.pixels.insert(image.pixels.end(), decoded.ptr(row), decoded.ptr(row) + decoded.cols);
-  return image;
+  if (decoded.empty()) throw ImageFault(name + ": not a complete image");
+  return grayImageOf(decoded);
+}
+
+GrayImage readGrayImage(const std::string& path) {
+  std::error_code ignored;
+  if (!std::filesystem::exists(path, ignored)) throw ImageFault(path + ": image file missing");
+  return decodeGrayImage(bytesOf(path), path);
 }
 
 }  // namespace lintel

@@ -4,6 +4,7 @@
 
 #include "EurocStream.h"
 #include "RawlogStream.h"
+#include "ShiftedStream.h"
 #include "StreamRecording.h"
 
 namespace lintel {
@@ -17,16 +18,27 @@ void checkParams(const RecordingParams& params) {
   if (params.to_s > 0 && params.to_s < params.from_s) throw RecordingError("to must not be before from");
 }
 
+std::unique_ptr<SensorStream> openUnshifted(const std::string& path, const RecordingParams& params,
+                                            const GivenCalibration& given) {
+  std::error_code ignored;
+  if (std::filesystem::is_directory(path, ignored)) return std::make_unique<EurocStream>(path, params, given);
+  if (!std::filesystem::exists(path, ignored))
+    throw RecordingError(path + ": does not exist: give an EuRoC folder or a .rawlog");
+  return std::make_unique<RawlogStream>(path, params, given);
+}
+
 }  // namespace
+
+std::unique_ptr<SensorStream> openStream(const std::string& path, const RecordingParams& params) {
+  const GivenCalibration given(params);
+  std::unique_ptr<SensorStream> stream = openUnshifted(path, params, given);
+  if (given.shift_ns() == 0) return stream;
+  return std::make_unique<ShiftedStream>(std::move(stream), given.shift_ns());
+}
 
 std::unique_ptr<Recording> openRecording(const std::string& path, const RecordingParams& params) {
   checkParams(params);
-  std::error_code ignored;
-  if (std::filesystem::is_directory(path, ignored))
-    return std::make_unique<StreamRecording>(std::make_unique<EurocStream>(path, params), params);
-  if (!std::filesystem::exists(path, ignored))
-    throw RecordingError(path + ": does not exist: give an EuRoC folder or a .rawlog");
-  return std::make_unique<StreamRecording>(std::make_unique<RawlogStream>(path, params), params);
+  return std::make_unique<StreamRecording>(openStream(path, params), params);
 }
 
 }  // namespace lintel

@@ -3,21 +3,15 @@
 
 #include <yaml-cpp/yaml.h>
 
-#include <charconv>
 #include <cmath>
 
+#include "ExactText.h"
 #include "lintel/sensing/Recording.h"
 
 namespace lintel {
 namespace {
 
 constexpr const char* kTitle = "# Lintel recording: what MRPT observations have no fields for\n";
-
-/// The shortest text that reads back as the same double.
-std::string exact(double value) {
-  char text[32];
-  return {text, std::to_chars(text, text + sizeof text, value).ptr};
-}
 
 double positive(const YAML::Node& node, const std::string& key, const std::string& where) {
   const double value = node[key] ? node[key].as<double>() : 0.0;
@@ -43,13 +37,13 @@ RawlogNote fromYaml(const YAML::Node& root, const std::string& where) {
 
 std::string formatNote(const RawlogNote& note) {
   std::string text = kTitle;
-  text += "imu:\n  rate_hz: " + exact(note.imu_rate_hz);
-  text += "\n  gyroscope_noise_density: " + exact(note.imu_noise.gyro_noise) + "  # rad/s/sqrt(Hz)";
-  text += "\n  gyroscope_random_walk: " + exact(note.imu_noise.gyro_walk) + "  # rad/s^2/sqrt(Hz)";
-  text += "\n  accelerometer_noise_density: " + exact(note.imu_noise.accel_noise) + "  # m/s^2/sqrt(Hz)";
-  text += "\n  accelerometer_random_walk: " + exact(note.imu_noise.accel_walk) + "  # m/s^3/sqrt(Hz)\ncameras:\n";
+  text += "imu:\n  rate_hz: " + exactText(note.imu_rate_hz);
+  text += "\n  gyroscope_noise_density: " + exactText(note.imu_noise.gyro_noise) + "  # rad/s/sqrt(Hz)";
+  text += "\n  gyroscope_random_walk: " + exactText(note.imu_noise.gyro_walk) + "  # rad/s^2/sqrt(Hz)";
+  text += "\n  accelerometer_noise_density: " + exactText(note.imu_noise.accel_noise) + "  # m/s^2/sqrt(Hz)";
+  text += "\n  accelerometer_random_walk: " + exactText(note.imu_noise.accel_walk) + "  # m/s^3/sqrt(Hz)\ncameras:\n";
   for (const auto& [label, rate_hz] : note.camera_rates_hz)
-    text += "  " + label + ": {rate_hz: " + exact(rate_hz) + "}\n";
+    text += "  " + label + ": {rate_hz: " + exactText(rate_hz) + "}\n";
   return text;
 }
 

@@ -10,6 +10,7 @@
 #include <map>
 #include <optional>
 
+#include "CameraModel.h"
 #include "CanonicalPose.h"
 #include "EurocYaml.h"
 #include "RawlogFile.h"
@@ -95,27 +96,19 @@ void checkBeginning(const Beginning& seen, const std::string& path, const Record
   throw RecordingError(path + ": holds no IMU sample (CObservationIMU)" + named(params.imu) + ": the IMU is needed");
 }
 
+/// MRPT's names of models are those that CameraModel knows. It has the coefficients in OpenCV's order.
 PinholeRadtan cameraOf(const CObservationImage& observation, const std::string& where) {
   const mrpt::img::TCamera& params = observation.cameraParams;
-  PinholeRadtan camera;
-  camera.width = static_cast<int>(params.ncols);
-  camera.height = static_cast<int>(params.nrows);
-  camera.fx = params.fx();
-  camera.fy = params.fy();
-  camera.cx = params.cx();
-  camera.cy = params.cy();
-  if (params.distortion == mrpt::img::DistortionModel::kannala_brandt)
-    throw RecordingError(where + ": fish-eye lenses are not supported: calibrate with the plumb_bob model");
-  if (params.distortion == mrpt::img::DistortionModel::plumb_bob) {
-    if (params.k3() != 0 || params.k4() != 0 || params.k5() != 0 || params.k6() != 0)
-      throw RecordingError(where + ": distortion terms k3 to k6 are not supported: calibrate with k1 k2 p1 p2 only");
-    camera.k1 = params.k1();
-    camera.k2 = params.k2();
-    camera.p1 = params.p1();
-    camera.p2 = params.p2();
-  }
-  checkCamera(camera, where);
-  return camera;
+  CameraDescription description;
+  description.width = params.ncols;
+  description.height = params.nrows;
+  description.intrinsics = {params.fx(), params.fy(), params.cx(), params.cy()};
+  description.distortion = mrpt::typemeta::TEnumType<mrpt::img::DistortionModel>::value2name(params.distortion);
+  description.coefficients.assign(params.dist.begin(), params.dist.end());
+  description.distortion_key = "distortion";
+  description.coefficients_key = "dist";
+  description.size_key = "ncols, nrows";
+  return makeCamera(description, where);
 }
 
 Pose poseOf(const mrpt::poses::CPose3D& pose, const std::string& where) {
@@ -126,27 +119,10 @@ Pose poseOf(const mrpt::poses::CPose3D& pose, const std::string& where) {
   return calibratedPose(matrix, where);
 }
 
-}  // namespace
-
-bool isComplete(const CObservationIMU& observation) {
-  using namespace mrpt::obs;
-  for (const TIMUDataIndex index : {IMU_WX, IMU_WY, IMU_WZ, IMU_X_ACC, IMU_Y_ACC, IMU_Z_ACC})
-    if (!observation.has(index)) return false;
-  return true;
-}
-
-RawlogProbe probeRawlog(const std::string& path, const RecordingParams& params) {
-  const Beginning seen = readBeginning(path, params);
-  checkBeginning(seen, path, params);
+/// The calibration that the observations and the note carry.
+Rig recordedRig(const Beginning& seen, const std::string& path, std::vector<Warning>& warnings) {
   const auto& [camera_label, images] = *seen.images.begin();
   const auto& [imu_label, samples] = *seen.imus.begin();
-
-  RawlogProbe probe;
-  probe.camera_label = camera_label;
-  probe.imu_label = imu_label;
-  if (images.first->image.isExternallyStored())
-    probe.first_external_image = images.first->image.getExternalStorageFile();
-
   EurocCamera camera;
   camera.model = cameraOf(*images.first, path + ": cameraParams of '" + camera_label + "'");
   camera.T_v_c = poseOf(images.first->cameraPose, path + ": cameraPose of '" + camera_label + "'");
@@ -160,11 +136,34 @@ RawlogProbe probeRawlog(const std::string& path, const RecordingParams& params) 
     const auto rate = seen.note->camera_rates_hz.find(camera_label);
     if (rate != seen.note->camera_rates_hz.end()) camera.rate_hz = rate->second;
   } else {
-    probe.warnings.push_back(
+    warnings.push_back(
         {Fault::Calibration,
          path + ": lacks the comment with the IMU's noise densities: those of an ADIS16448 are assumed"});
   }
-  probe.rig = rigOf(camera, imu);
+  return rigOf(camera, imu);
+}
+
+}  // namespace
+
+bool isComplete(const CObservationIMU& observation) {
+  using namespace mrpt::obs;
+  for (const TIMUDataIndex index : {IMU_WX, IMU_WY, IMU_WZ, IMU_X_ACC, IMU_Y_ACC, IMU_Z_ACC})
+    if (!observation.has(index)) return false;
+  return true;
+}
+
+RawlogProbe probeRawlog(const std::string& path, const RecordingParams& params, const GivenCalibration& given) {
+  const Beginning seen = readBeginning(path, params);
+  checkBeginning(seen, path, params);
+  const auto& [camera_label, images] = *seen.images.begin();
+  RawlogProbe probe;
+  probe.camera_label = camera_label;
+  probe.imu_label = seen.imus.begin()->first;
+  if (images.first->image.isExternallyStored())
+    probe.first_external_image = images.first->image.getExternalStorageFile();
+  std::vector<Warning> of_recorded;
+  probe.rig = given.rig([&] { return recordedRig(seen, path, of_recorded); }, probe.warnings);
+  if (!given.hasNoise()) probe.warnings.insert(probe.warnings.end(), of_recorded.begin(), of_recorded.end());
   return probe;
 }
 

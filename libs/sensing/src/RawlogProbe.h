@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "Warnings.h"
+#include "GivenCalibration.h"
 #include "lintel/sensing/Recording.h"
 
 namespace mrpt::obs {
@@ -23,7 +23,7 @@ struct RawlogProbe {
 
 /// Reads until one second after the first image and the first IMU sample. Takes the camera and IMU that `params` name,
 /// else the alphabetically first. Throws RecordingError.
-RawlogProbe probeRawlog(const std::string& path, const RecordingParams& params);
+RawlogProbe probeRawlog(const std::string& path, const RecordingParams& params, const GivenCalibration& given);
 
 /// True when it measures rotation and acceleration about all three axes.
 bool isComplete(const mrpt::obs::CObservationIMU& observation);

@@ -24,8 +24,8 @@ T popFront(std::deque<T>& queue) {
 
 }  // namespace
 
-RawlogStream::RawlogStream(const std::string& path, const RecordingParams& params)
-    : path_(path), probe_(probeRawlog(path, params)), file_(path) {
+RawlogStream::RawlogStream(const std::string& path, const RecordingParams& params, const GivenCalibration& given)
+    : path_(path), probe_(probeRawlog(path, params, given)), file_(path) {
   if (probe_.first_external_image.empty()) return;
   images_folder_ = findImagesFolder(path, probe_.first_external_image, [this](Fault fault, std::string text) {
     probe_.warnings.push_back({fault, std::move(text)});

@@ -3,6 +3,7 @@
 
 #include <deque>
 
+#include "GivenCalibration.h"
 #include "RawlogFile.h"
 #include "RawlogProbe.h"
 #include "SampleGate.h"
@@ -14,7 +15,7 @@ namespace lintel {
 class RawlogStream final : public SensorStream {
  public:
   /// Throws RecordingError.
-  RawlogStream(const std::string& path, const RecordingParams& params);
+  RawlogStream(const std::string& path, const RecordingParams& params, const GivenCalibration& given);
 
   const Rig& rig() const override { return probe_.rig; }
   const std::string& path() const override { return path_; }

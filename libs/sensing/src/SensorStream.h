@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <functional>
+#include <memory>
 #include <optional>
 #include <stdexcept>
 #include <string>
@@ -46,6 +47,9 @@ class SensorStream {
   /// to `needed_ns`: later calls with a later time may find one. Throws RecordingError.
   virtual std::optional<ImuSample> nextImu(std::int64_t needed_ns, const WarningSink& warn) = 0;
 };
+
+/// Opens what openRecording() opens, with the same errors.
+std::unique_ptr<SensorStream> openStream(const std::string& path, const RecordingParams& params);
 
 /// Range of frame times that params ask for [ns], both included, given the first frame's time.
 struct FrameRange {

@@ -61,7 +61,7 @@ TEST_P(SensorYamlTest, IsRefusedByName) {
 INSTANTIATE_TEST_SUITE_P(
     Faults, SensorYamlTest,
     testing::Values(YamlFault{"cam0", "intrinsics", "intrinsic", "intrinsics is missing"},
-                    YamlFault{"cam0", "T_BS", "T_SB", "T_BS: data is missing"},
+                    YamlFault{"cam0", "T_BS", "T_SB", "T_BS is missing"},
                     YamlFault{"cam0", "rate_hz: 20", "rate_hz: fast", "rate_hz is not of the expected type"},
                     YamlFault{"cam0", "rate_hz: 20", "rate_hz: -20", "rate_hz must be a number greater than 0"},
                     YamlFault{"cam0", "pinhole", "omni", "camera_model 'omni' is not supported"},

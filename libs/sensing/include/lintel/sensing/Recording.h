@@ -21,11 +21,12 @@ class RecordingError : public std::runtime_error {
 
 /// What to read of a recording.
 struct RecordingParams {
-  double from_s = 0;             ///< skip frames before this time after the first frame [s]
-  double to_s = 0;               ///< stop after this time after the first frame [s]; 0 = to the end
-  std::string camera;            ///< folder or sensor label; empty = cam0, in a rawlog the alphabetically first
-  std::string imu;               ///< folder or sensor label; empty = imu0, in a rawlog the alphabetically first
-  std::size_t frames_ahead = 8;  ///< frames decoded ahead on another thread; 0 = decode when asked
+  double from_s = 0;                     ///< skip frames before this time after the first frame [s]
+  double to_s = 0;                       ///< stop after this time after the first frame [s]; 0 = to the end
+  std::string camera;                    ///< folder or sensor label; empty = cam0, in a rawlog the alphabetically first
+  std::string imu;                       ///< folder or sensor label; empty = imu0, in a rawlog the alphabetically first
+  std::vector<std::string> calibration;  ///< files that replace the recording's own calibration (Calibration.h)
+  std::size_t frames_ahead = 8;          ///< frames decoded ahead on another thread; 0 = decode when asked
 };
 
 /// A recording as a time-ordered stream. Memory does not grow with its length (images are decoded as they are needed).

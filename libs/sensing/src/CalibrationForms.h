@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <string>
+
+#include "CameraModel.h"
+#include "YamlFile.h"
+#include "lintel/sensing/Calibration.h"
+
+namespace lintel {
+
+/// A camera whose model is made, and refused, when it is chosen.
+CameraCalibration describedCamera(CameraDescription description, const std::string& where);
+
+/// Adds a camera, in the place of one with the same label.
+void addCamera(CameraCalibration camera, Calibration& calibration);
+
+/// The path that a file gives for `key`, beside it unless absolute.
+std::string besideFile(const YamlFile& file, const std::string& key);
+
+/// Of VINS-Mono, which has the camera in the same file, or of VINS-Fusion, which names a file for each camera.
+void readVinsForm(const YamlFile& file, Calibration& calibration);
+
+/// The camera alone, as OpenCV's calibration program and ROS' camera_calibration write it.
+void readOpenCvForm(const YamlFile& file, Calibration& calibration);
+
+}  // namespace lintel
