@@ -65,7 +65,7 @@ _lintel() {
         esac
     fi
     case $("$program" --help 2>/dev/null | sed -n '/^Positionals:/{n; p}') in
-    *INPUT*) _lintel_files "$current" 'rawlog' ;;
+    *INPUT*) _lintel_files "$current" 'rawlog|bag|db3|mcap' ;;
     *MAP.lintel*) _lintel_files "$current" 'lintel' ;;
     *SUITE*) _lintel_files "$current" 'yaml|yml' ;;
     esac

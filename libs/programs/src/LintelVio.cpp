@@ -14,6 +14,7 @@
 
 #include "CommandLine.h"
 #include "ProgramMain.h"
+#include "RecordingInfo.h"
 #include "RecordingOptions.h"
 #include "lintel/core/AtomicFile.h"
 #include "lintel/exporting/MapExport.h"
@@ -46,6 +47,7 @@ class LintelVio {
       out_ << writeConfiguration(configuration);
       return 0;
     }
+    if (info_) return printInfo();
     checkCommandLine();
     auto recording = openRecording(input_, recording_params_);
     prepareOutput();
@@ -73,18 +75,25 @@ class LintelVio {
            "  lintel-vio MH_01_easy -o out                       an EuRoC folder (the one that holds mav0)\n"
            "  lintel-vio flight.rawlog -o out --export glb,ply   a rawlog\n"
            "  lintel-vio flight.rawlog -o out --from 10 --to 40  thirty seconds of it\n"
-           "  lintel-vio flight.rawlog -o out --calibration camchain-imucam.yaml --calibration imu.yaml   Kalibr's\n"
+           "  lintel-vio flight.bag -o out --calibration camchain-imucam.yaml --calibration imu.yaml   a ROS bag\n"
+           "  lintel-vio flight.mcap --info                      its topics\n"
            "  lintel-vio flight.rawlog -o out --set features=points   points alone\n"
            "  lintel-vio --dump-config > my.yaml                 every option with its default";
   }
 
   void addOptions() {
     line_.footer(examples());
-    line_.option("input", input_, "A rawlog or an EuRoC folder (mav0 or its parent)").type("INPUT");
+    line_.option("input", input_, "A rawlog, an EuRoC folder (mav0 or its parent), or a ROS bag (.bag, .db3, .mcap)")
+        .type("INPUT");
     line_.option("-o,--output", output_, "Folder to write to; made if it does not exist").type("OUT");
     line_.option("-c,--config", config_, "Configuration; what it leaves out keeps its default").type("CONFIG.yaml");
     line_.option("--set", settings_, "Set one option, e.g. --set estimator.keyframes=8").type("KEY=VALUE").repeatable();
     addRecordingOptions(line_, recording_params_);
+    line_.flag("--info", info_,
+               "List the recording's sensors, describe its rig, say what looks wrong with it, and stop");
+    line_.option("--save-calibration", info_request_.save_calibration, "With --info: write the rig to this file")
+        .type("FILE.yaml");
+    line_.option("--form", info_request_.form, "Form of that file").oneOf({"kalibr", "vins"}).showDefault();
     line_.option("--from", recording_params_.from_s, "Start this long after the first frame [s]").notNegative();
     line_.option("--to", recording_params_.to_s, "Stop this long after the first frame [s]; 0 = at the end")
         .notNegative();
@@ -103,6 +112,16 @@ class LintelVio {
     line_.flag("--dump-config", dump_config_, "Print the effective configuration and stop");
   }
 
+  int printInfo() {
+    if (input_.empty() && recording_params_.calibration.empty())
+      throw UsageError("INPUT is missing: a recording, or --calibration FILE.yaml; see --help");
+    info_request_.recording = input_;
+    info_request_.params = recording_params_;
+    info_request_.overwrite = overwrite_;
+    printRecordingInfo(info_request_, out_, err_);
+    return 0;
+  }
+
   Configuration readOptions() const {
     Configuration configuration;
     if (!config_.empty()) readConfiguration(config_, configuration);
@@ -111,7 +130,7 @@ class LintelVio {
   }
 
   void checkCommandLine() {
-    if (input_.empty()) throw UsageError("INPUT is missing: a rawlog or an EuRoC folder; see --help");
+    if (input_.empty()) throw UsageError("INPUT is missing: a rawlog, an EuRoC folder or a ROS bag; see --help");
     if (output_.empty()) throw UsageError("-o OUT is missing: the folder to write to");
     if (recording_params_.to_s > 0 && recording_params_.to_s <= recording_params_.from_s)
       throw UsageError("--to must be later than --from");
@@ -233,11 +252,12 @@ class LintelVio {
   std::string input_, output_, config_, draw_tracks_;
   std::vector<std::string> settings_, exports_{"glb", "obj", "ply", "3Dscene", "png"}, exported_;
   RecordingParams recording_params_;
+  InfoRequest info_request_;
   RunSeries series_;
   RunCosts costs_;
   Rig calibration_;
   int threads_ = 2;
-  bool no_refine_ = false, overwrite_ = false, quiet_ = false, dump_config_ = false;
+  bool no_refine_ = false, overwrite_ = false, quiet_ = false, dump_config_ = false, info_ = false;
 };
 
 }  // namespace

@@ -8,10 +8,9 @@ void addRecordingOptions(CommandLine& line, RecordingParams& params) {
               "Calibration instead of the recording's own: of Kalibr, OpenVINS, VINS, EuRoC or OpenCV")
       .type("FILE.yaml")
       .repeatable();
-  line.option("--camera", params.camera,
-              "Camera to use: its label or folder; cam0 or the alphabetically first by default")
-      .type("LABEL");
-  line.option("--imu", params.imu, "IMU to use: its label or folder; imu0 or the alphabetically first by default")
+  line.option("--camera,--image-topic", params.camera, "Camera to use, by its label, folder or topic").type("LABEL");
+  line.option("--imu,--imu-topic", params.imu,
+              "IMU to use, by its label, folder or topic; GYRO,ACCEL where they are two topics")
       .type("LABEL");
 }
 

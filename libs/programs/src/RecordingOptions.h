@@ -9,7 +9,4 @@ namespace lintel {
 /// The options of every program that opens a recording: which sensors of it, and their calibration.
 void addRecordingOptions(CommandLine& line, RecordingParams& params);
 
-/// For messages and --help: what a recording may be.
-constexpr const char* kRecordingForms = "an EuRoC folder (mav0 or its parent) or a rawlog";
-
 }  // namespace lintel

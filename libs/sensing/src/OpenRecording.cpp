@@ -2,6 +2,7 @@
 #include <cmath>
 #include <filesystem>
 
+#include "BagStream.h"
 #include "EurocStream.h"
 #include "RawlogStream.h"
 #include "ShiftedStream.h"
@@ -21,9 +22,10 @@ void checkParams(const RecordingParams& params) {
 std::unique_ptr<SensorStream> openUnshifted(const std::string& path, const RecordingParams& params,
                                             const GivenCalibration& given) {
   std::error_code ignored;
+  if (isBag(path)) return std::make_unique<BagStream>(path, params, given);
   if (std::filesystem::is_directory(path, ignored)) return std::make_unique<EurocStream>(path, params, given);
   if (!std::filesystem::exists(path, ignored))
-    throw RecordingError(path + ": does not exist: give an EuRoC folder or a .rawlog");
+    throw RecordingError(path + ": does not exist: give an EuRoC folder, a .rawlog, or a ROS bag (.bag .db3 .mcap)");
   return std::make_unique<RawlogStream>(path, params, given);
 }
 

@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include "TinyEuroc.h"
+#include "lintel/sensing/RigReport.h"
 
 namespace lintel {
 namespace {
@@ -210,6 +211,30 @@ TEST(RigDoubts, NameWhatIsStrange) {
   halved.camera.height = 240;
   EXPECT_THAT(rigDoubts(halved), Contains(HasSubstr("another image size")));
   EXPECT_THAT(rigDoubts(rig, 5.0), ElementsAre(HasSubstr("milliseconds")));
+}
+
+/// At rest the specific force points up: along -y of an upright camera.
+TEST(MountingDoubts, AnInvertedPoseAndGShow) {
+  Rig rig;
+  Eigen::Matrix3d R_b_c;  // EuRoC's: the IMU's x axis points up
+  R_b_c << 0, -1, 0, 1, 0, 0, 0, 0, 1;
+  rig.T_b_c.q = Eigen::Quaterniond(R_b_c);
+  EXPECT_THAT(mountingDoubts(rig, {9.7, 0.2, -1}), IsEmpty());
+  EXPECT_THAT(mountingDoubts(rig, {1, 0, 0}), ElementsAre(HasSubstr("in g?")));
+  EXPECT_THAT(mountingDoubts(rig, {0.01, 0, 0}), ElementsAre(HasSubstr("gravity must not be taken out")));
+  rig.T_b_c = rig.T_b_c.inverse();
+  EXPECT_THAT(mountingDoubts(rig, {9.7, 0.2, -1}), ElementsAre(HasSubstr("is the inverse given?")));
+}
+
+TEST_F(CalibrationTest, RigsAreReportedWithAndWithoutARecording) {
+  RecordingParams params;
+  params.calibration = {write("chain.yaml", chain("T_cam_imu", kCamFromImu))};
+  EXPECT_EQ(reportRig("", params).time_shift_s, 0.005);
+  test::TinyEuroc().write(folder_.path().string());
+  EXPECT_EQ(reportRig(folder_.path().string(), {}).rig.camera.width, 32);
+  EXPECT_EQ(reportRig(folder_.path().string(), params).rig.camera.fx, 20);
+  params.calibration = {write("imu.yaml", noise(""))};
+  EXPECT_THROW(reportRig("", params), RecordingError);
 }
 
 TEST(RigInWords, SaysWhereTheCameraLooks) {
