@@ -15,7 +15,6 @@
 #include "lintel/inertial/NoiseMeter.h"
 #include "lintel/inertial/Propagation.h"
 #include "solver/WindowSolver.h"
-#include "window/AdaptiveWeights.h"
 #include "window/FailureDetection.h"
 #include "window/KeyframeSelection.h"
 #include "window/OutlierRejection.h"
@@ -81,7 +80,6 @@ class Estimator::Impl {
 
   Rig rig_;
   EstimatorParams params_;
-  const FactorParams configured_ = params_.factors;
   NoiseMeter noise_;
   Initializer initializer_;
   SlidingWindow window_;
@@ -226,8 +224,6 @@ void Estimator::Impl::solve(WindowUpdate& update) {
   factors.addAll(params_, rig_.T_b_c);
   const SolveLimits limits{params_.max_iterations, settledMove(params_.degeneracy)};
   update.iterations = solveWindow(window_, factors.factors(), params_.calibration, limits).iterations;
-  if (params_.factors.adaptive_weights)
-    adaptSigmas(residualScales(window_, factors.factors()), configured_, params_.factors);
   rejectOutliers(window_, params_.landmarks);
   for (auto& [id, track] : window_.lines)
     if (entersProblem(track, params_.degeneracy)) updateLineUncertainty(window_, params_, track);

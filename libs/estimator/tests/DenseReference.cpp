@@ -18,7 +18,37 @@ struct LinearFactor {
   std::vector<Eigen::MatrixXd> jacobians;
 };
 
-LinearFactor lineariseFactor(SlidingWindow& window, const Factor& factor) {
+double robustSquare(const Factor& factor, double squared) {
+  if (!factor.loss) return squared;
+  double rho[3];
+  factor.loss->Evaluate(squared, rho);
+  return rho[0];
+}
+
+/// Weights of tracks by their landmarks: of Student's t distribution, (freedom + n) / (freedom + sum of squares), n the
+/// number of residuals less the dimensions of the landmark.
+std::map<BlockKey, double> trackWeights(SlidingWindow& window, const std::vector<Factor>& factors) {
+  std::map<BlockKey, double> squares, count, weights;
+  for (const Factor& factor : factors) {
+    if (std::isinf(factor.track_freedom)) continue;
+    std::vector<const double*> blocks;
+    for (const BlockKey& key : factor.blocks) blocks.push_back(window.block(key));
+    Eigen::VectorXd r(factor.cost->num_residuals());
+    factor.cost->Evaluate(blocks.data(), r.data(), nullptr);
+    const BlockKey& landmark = factor.blocks.back();
+    squares[landmark] += robustSquare(factor, r.squaredNorm());
+    count[landmark] += static_cast<double>(r.size());
+  }
+  for (const Factor& factor : factors) {
+    if (std::isinf(factor.track_freedom)) continue;
+    const BlockKey& landmark = factor.blocks.back();
+    const double n = count[landmark] - manifoldOf(landmark.kind)->TangentSize();
+    weights[landmark] = (factor.track_freedom + n) / (factor.track_freedom + squares[landmark]);
+  }
+  return weights;
+}
+
+LinearFactor lineariseFactor(SlidingWindow& window, const Factor& factor, double track_weight) {
   const ceres::CostFunction& cost = *factor.cost;
   const int rows = cost.num_residuals();
   std::vector<const double*> blocks;
@@ -38,6 +68,7 @@ LinearFactor lineariseFactor(SlidingWindow& window, const Factor& factor) {
     factor.loss->Evaluate(result.residual.squaredNorm(), rho);
     weight = std::sqrt(rho[1]);
   }
+  weight *= std::sqrt(track_weight);
   result.residual *= weight;
   for (std::size_t i = 0; i < blocks.size(); ++i) {
     const auto manifold = manifoldOf(factor.blocks[i].kind);
@@ -75,8 +106,10 @@ NormalEquations linearise(SlidingWindow& window, const std::vector<Factor>& fact
   eq.offsets.push_back(size);
   eq.H = Eigen::MatrixXd::Zero(size, size);
   eq.b = Eigen::VectorXd::Zero(size);
+  const std::map<BlockKey, double> weights = trackWeights(window, factors);
   for (const Factor& factor : factors) {
-    const LinearFactor f = lineariseFactor(window, factor);
+    const auto weight = std::isinf(factor.track_freedom) ? weights.end() : weights.find(factor.blocks.back());
+    const LinearFactor f = lineariseFactor(window, factor, weight == weights.end() ? 1 : weight->second);
     for (std::size_t i = 0; i < factor.blocks.size(); ++i) {
       const Eigen::MatrixXd& Ji = f.jacobians[i];
       const Eigen::Index row = offset.at(factor.blocks[i]);

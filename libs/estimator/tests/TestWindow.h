@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <limits>
 #include <memory>
 #include <vector>
 
@@ -14,6 +15,13 @@
 namespace lintel::test {
 
 inline const EstimatorParams kParams;  ///< the defaults
+
+/// The defaults, but the residuals of a track are independent of each other: what Ceres can minimise.
+inline FactorParams withoutTrackLoss() {
+  FactorParams params;
+  params.track_freedom = std::numeric_limits<double>::infinity();
+  return params;
+}
 
 /// A rig that is easy to compute with by hand: no distortion, focal length 500 px, camera and body axes the same.
 Rig plainRig();

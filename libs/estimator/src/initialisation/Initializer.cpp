@@ -55,6 +55,13 @@ ImuStatistics imuStatistics(const SlidingWindow& window) {
 
 }  // namespace
 
+/// The calibration is held: its errors are in the images' residuals, and common to all tracks.
+EstimatorParams Initializer::paramsAtStart(EstimatorParams params) {
+  params.factors.point_sigma_px = params.initializer.point_sigma_px;
+  params.factors.track_freedom = std::numeric_limits<double>::infinity();
+  return params;
+}
+
 double medianDisparityPx(const SlidingWindow& window, std::size_t frame_a, std::size_t frame_b, bool rotation_free) {
   const FrameId a = window.frames[frame_a].id, b = window.frames[frame_b].id;
   Eigen::Quaterniond R_b0_b1 = Eigen::Quaterniond::Identity();  // 0 is frame_a, 1 is frame_b

@@ -14,7 +14,7 @@ namespace lintel {
 class Initializer {
  public:
   Initializer(const EstimatorParams& params, const Pose& T_b_c_calibrated)
-      : params_(params), T_b_c_calibrated_(T_b_c_calibrated) {}
+      : params_(paramsAtStart(params)), T_b_c_calibrated_(T_b_c_calibrated) {}
 
   /// Tries on all frames of `window`. On success its states, points and priors are set (first frame at the origin,
   /// yaw 0) and the result is empty; else the window is unchanged in frames and tracks, and the result says in words
@@ -25,6 +25,7 @@ class Initializer {
   bool atRest(const SlidingWindow& window) const;
 
  private:
+  static EstimatorParams paramsAtStart(EstimatorParams params);
   std::string startStatic(SlidingWindow& window) const;
   std::string startMoving(SlidingWindow& window) const;
   std::string tryMoving(const Eigen::Vector3d& bias_gyro, SlidingWindow& trial) const;
@@ -35,7 +36,7 @@ class Initializer {
   void setBiasPrior(SlidingWindow& window, const MotionBlock& mean, double gyro_sigma, double velocity_sigma) const;
   void levelAndCentre(SlidingWindow& window) const;
 
-  const EstimatorParams& params_;
+  const EstimatorParams params_;
   Pose T_b_c_calibrated_;
 };
 

@@ -4,6 +4,7 @@
 #include <ceres/cost_function.h>
 #include <ceres/loss_function.h>
 
+#include <limits>
 #include <memory>
 #include <type_traits>
 #include <vector>
@@ -19,6 +20,8 @@ struct Factor {
   const ceres::CostFunction* cost = nullptr;
   const ceres::LossFunction* loss = nullptr;
   std::vector<BlockKey> blocks;
+  /// Of an image's residuals with a point or a line: their TrackLoss (the same in all of a track); infinite: none.
+  double track_freedom = std::numeric_limits<double>::infinity();
 };
 
 /// The manifold of a kind of block; shared, stateless.

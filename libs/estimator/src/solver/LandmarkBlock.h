@@ -2,9 +2,11 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <limits>
 #include <vector>
 
 #include "lintel/factors/ImageFactor.h"
+#include "lintel/factors/TrackLoss.h"
 #include "solver/CameraEquations.h"
 #include "solver/Factor.h"
 
@@ -20,12 +22,14 @@ struct LandmarkBlock {
   struct Sighting {
     const ImageFactor<Target>* factor = nullptr;
     int camera = 0;
+    ImageLinearisation<Target> linearised;
     CameraPart W = CameraPart::Zero(), Y = CameraPart::Zero();  ///< camera-landmark block of H; the same times the
                                                                 ///< inverse root of the landmark's block
   };
 
   double* block = nullptr;
-  const ceres::LossFunction* loss = nullptr;
+  const ceres::LossFunction* loss = nullptr;                      ///< of a sighting
+  TrackLoss track_loss{std::numeric_limits<double>::infinity()};  ///< of all sightings together
   std::vector<Sighting> sightings;
   const Factor* tie = nullptr;  ///< ties a line to a direction
   int direction = -1;           ///< its place among the kept targets
@@ -49,11 +53,17 @@ struct LandmarkBlock {
   double backSubstitute(const Eigen::VectorXd& camera_step, double damping, const CameraLayout& layout);
 
  private:
+  /// The cost of sightings whose squared residuals, robust, have this sum, and the weight that their track has.
+  double trackCost(double squared, double& weight) const {
+    return track_loss.cost(squared, Target::kRows * static_cast<int>(sightings.size()), T, weight);
+  }
+  void addSighting(Sighting& sighting, double track_weight, const RowMajorMatrix& plus, const CameraLayout& layout,
+                   CameraEquations& eq);
   double addTie(const CameraLayout& layout, CameraEquations& eq);
   void eliminateTie(const Eigen::Matrix<double, T, 1>& y, const CameraLayout& layout, CameraEquations& eq);
 };
 
-/// A residual of an image whose target is kept.
+/// A residual of an image whose target is kept; it has no loss of its track.
 template <class Target>
 struct KeptSighting {
   const ImageFactor<Target>* factor = nullptr;

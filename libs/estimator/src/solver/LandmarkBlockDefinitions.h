@@ -49,6 +49,7 @@ double LandmarkBlock<Target>::cost(const std::vector<CameraView>& views, const d
     s.factor->linearise(views[static_cast<std::size_t>(s.camera)], correction, block, false, l);
     sum += robustCost(loss, l.residual.squaredNorm(), weight);
   }
+  sum = trackCost(2 * sum, weight);
   if (tie) {
     const double* blocks[] = {block, layout.block(direction)};
     Eigen::Vector3d r;
@@ -66,30 +67,38 @@ double LandmarkBlock<Target>::linearise(const std::vector<CameraView>& views, co
   W_intrinsics.setZero();
   RowMajorMatrix plus(Target::kSize, T);
   manifoldOf(kKindOf<Target>)->PlusJacobian(block, plus.data());
-  const Eigen::Index intrinsics = layout.intrinsics();
   double sum = 0, weight;
-  ImageLinearisation<Target> l;
   for (Sighting& s : sightings) {
-    s.factor->linearise(views[static_cast<std::size_t>(s.camera)], correction, block, true, l);
-    sum += robustCost(loss, l.residual.squaredNorm(), weight);
-    const double root = std::sqrt(weight);
-    const Eigen::Matrix<double, Target::kRows, T> J = root * landmark_block::tangentJacobian(l, plus);
-    const Eigen::Matrix<double, Target::kRows, kCameraTangent> Jc = root * l.d_camera;
-    const Eigen::Matrix<double, Target::kRows, kIntrinsicsSize> Ji = root * l.d_intrinsics;
-    const Eigen::Matrix<double, Target::kRows, 1> r = root * l.residual;
-    H.noalias() += J.transpose() * J;
-    b.noalias() += J.transpose() * r;
-    W_intrinsics.noalias() += Ji.transpose() * J;
-    s.W.noalias() = Jc.transpose() * J;
-    const Eigen::Index at = layout.camera(s.camera);
-    eq.H.block<kCameraTangent, kCameraTangent>(at, at).noalias() += Jc.transpose() * Jc;
-    eq.H.block<kIntrinsicsSize, kCameraTangent>(intrinsics, at).noalias() += Ji.transpose() * Jc;
-    eq.H.block<kIntrinsicsSize, kIntrinsicsSize>(intrinsics, intrinsics).noalias() += Ji.transpose() * Ji;
-    eq.b.segment<kCameraTangent>(at).noalias() += Jc.transpose() * r;
-    eq.b.segment<kIntrinsicsSize>(intrinsics).noalias() += Ji.transpose() * r;
+    s.factor->linearise(views[static_cast<std::size_t>(s.camera)], correction, block, true, s.linearised);
+    sum += robustCost(loss, s.linearised.residual.squaredNorm(), weight);
   }
+  sum = trackCost(2 * sum, weight);
+  for (Sighting& s : sightings) addSighting(s, weight, plus, layout, eq);
   if (tie) sum += addTie(layout, eq);
   return sum;
+}
+
+template <class Target>
+void LandmarkBlock<Target>::addSighting(Sighting& sighting, double track_weight, const RowMajorMatrix& plus,
+                                        const CameraLayout& layout, CameraEquations& eq) {
+  const ImageLinearisation<Target>& l = sighting.linearised;
+  double weight;
+  robustCost(loss, l.residual.squaredNorm(), weight);
+  const double root = std::sqrt(weight * track_weight);
+  const Eigen::Matrix<double, Target::kRows, T> J = root * landmark_block::tangentJacobian(l, plus);
+  const Eigen::Matrix<double, Target::kRows, kCameraTangent> Jc = root * l.d_camera;
+  const Eigen::Matrix<double, Target::kRows, kIntrinsicsSize> Ji = root * l.d_intrinsics;
+  const Eigen::Matrix<double, Target::kRows, 1> r = root * l.residual;
+  H.noalias() += J.transpose() * J;
+  b.noalias() += J.transpose() * r;
+  W_intrinsics.noalias() += Ji.transpose() * J;
+  sighting.W.noalias() = Jc.transpose() * J;
+  const Eigen::Index at = layout.camera(sighting.camera), intrinsics = layout.intrinsics();
+  eq.H.block<kCameraTangent, kCameraTangent>(at, at).noalias() += Jc.transpose() * Jc;
+  eq.H.block<kIntrinsicsSize, kCameraTangent>(intrinsics, at).noalias() += Ji.transpose() * Jc;
+  eq.H.block<kIntrinsicsSize, kIntrinsicsSize>(intrinsics, intrinsics).noalias() += Ji.transpose() * Ji;
+  eq.b.segment<kCameraTangent>(at).noalias() += Jc.transpose() * r;
+  eq.b.segment<kIntrinsicsSize>(intrinsics).noalias() += Ji.transpose() * r;
 }
 
 template <class Target>

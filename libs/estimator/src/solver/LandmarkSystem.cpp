@@ -62,6 +62,7 @@ bool LandmarkSystem::addSighting(SlidingWindow& window, const Factor& factor, co
     if (staying_.count(key) == 0) {
       LandmarkBlock<Target>& landmark = landmarkOf<Target>(window, key.id);
       landmark.loss = factor.loss;
+      landmark.track_loss = TrackLoss(factor.track_freedom);
       landmark.sightings.push_back({image, camera});
       return true;
     }

@@ -85,7 +85,8 @@ void WindowFactors::addPoint(const PointTrack& track) {
                         {{BlockKey::kPose, s.frame},
                          {BlockKey::kExtrinsics, 0},
                          {BlockKey::kCorrection, 0},
-                         {BlockKey::kPoint, track.id}}});
+                         {BlockKey::kPoint, track.id}},
+                        params_.track_freedom});
   }
 }
 
@@ -108,7 +109,8 @@ void WindowFactors::addLine(const LineTrack& track, const DegeneracyParams& dege
                         {{BlockKey::kPose, s.frame},
                          {BlockKey::kExtrinsics, 0},
                          {BlockKey::kCorrection, 0},
-                         {BlockKey::kLine, track.id}}});
+                         {BlockKey::kLine, track.id}},
+                        params_.track_freedom});
   }
   if (track.group == 0) return;
   setStructuralLoss(degeneracy);

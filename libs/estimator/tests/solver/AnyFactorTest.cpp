@@ -91,7 +91,7 @@ class AnyFactorTest : public testing::Test {
       if (track.triangulated && track.sightings.size() > 2 && points_.size() < 3) points_.push_back(id);
     for (const auto& [id, track] : window_.lines)
       if (isWellKnown(track) && lines_.size() < 3) lines_.push_back(id);
-    factors_ = std::make_unique<WindowFactors>(window_, kParams.factors);
+    factors_ = std::make_unique<WindowFactors>(window_, withoutTrackLoss());
     factors_->addMeasurements(kParams);
   }
 

@@ -116,43 +116,6 @@ TEST_F(MarginalizerTest, GradientIsThatOfExplicitElimination) {
   EXPECT_LT((again.b - expected).norm(), 1e-6 * expected.norm());
 }
 
-TEST_F(MarginalizerTest, GradientOfTheNormalEquationsIsThatOfTheRobustCost) {
-  NormalEquations eq = linearise(window_, factors_->factors(), {});
-  const auto cost = [&] {
-    double sum = 0;
-    for (const Factor& f : factors_->factors()) {
-      std::vector<const double*> blocks;
-      for (const BlockKey& key : f.blocks) blocks.push_back(window_.block(key));
-      Eigen::VectorXd r(f.cost->num_residuals());
-      f.cost->Evaluate(blocks.data(), r.data(), nullptr);
-      double rho[3] = {r.squaredNorm(), 1, 0};
-      if (f.loss) f.loss->Evaluate(r.squaredNorm(), rho);
-      sum += 0.5 * rho[0];
-    }
-    return sum;
-  };
-  for (std::size_t i = 0; i < eq.blocks.size(); ++i) {
-    const auto manifold = manifoldOf(eq.blocks[i].kind);
-    double* x = window_.block(eq.blocks[i]);
-    const Eigen::VectorXd x_0 = Eigen::Map<Eigen::VectorXd>(x, manifold->AmbientSize());
-    for (int k = 0; k < manifold->TangentSize(); ++k) {
-      const double step = 1e-6;
-      const auto shifted = [&](double by) {
-        Eigen::VectorXd delta = Eigen::VectorXd::Zero(manifold->TangentSize());
-        delta[k] = by;
-        manifold->Plus(x_0.data(), delta.data(), x);
-        const double value = cost();
-        Eigen::Map<Eigen::VectorXd>(x, manifold->AmbientSize()) = x_0;
-        return value;
-      };
-      const double numeric = (shifted(step) - shifted(-step)) / (2 * step);
-      const double curvature = eq.H(eq.offsets[i] + k, eq.offsets[i] + k);
-      EXPECT_NEAR(eq.b[eq.offsets[i] + k], numeric, 1e-4 * std::abs(numeric) + 1e-6 * std::sqrt(curvature) + 1e-2)
-          << "block " << i << " component " << k;
-    }
-  }
-}
-
 TEST_F(MarginalizerTest, NothingStaysNothingComes) {
   WindowFactors factors(window_, kParams.factors);
   factors.addGauge();

@@ -72,7 +72,10 @@ std::vector<TrackId> parallelLines(SlidingWindow& window) {
 enum class Structure { kNone, kShared, kPairs };
 
 WindowFactors factorsOf(const SlidingWindow& window, const std::vector<TrackId>& lines, Structure structure) {
-  WindowFactors factors(window, kParams.factors);
+  FactorParams params = withoutTrackLoss();
+  params.line_sigma_px = 1;  // the structure turns lines by small angles only
+  params.point_sigma_px = 0.7;
+  WindowFactors factors(window, params);
   factors.addAll(kParams, window.T_b_c());
   factors.add(makeBlockPrior(manifoldOf(BlockKey::kMotion), window.frames.front().motion,
                              Eigen::VectorXd::Constant(kMotionSize, 0.02)),

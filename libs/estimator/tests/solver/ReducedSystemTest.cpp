@@ -120,6 +120,32 @@ TEST_F(ReducedSystemTest, AStepSolvesTheDampedDenseSystem) {
   }
 }
 
+TEST_F(ReducedSystemTest, TheGradientIsThatOfTheCost) {
+  // the loss of whole tracks included, which Ceres cannot have
+  const NormalEquations dense = linearise(window_, factors_->factors(), {});
+  ReducedSystem system(window_, factors_->factors(), {}, {});
+  for (std::size_t i = 0; i < dense.blocks.size(); ++i) {
+    const auto manifold = manifoldOf(dense.blocks[i].kind);
+    std::vector<double> saved(static_cast<std::size_t>(manifold->AmbientSize()));
+    double* block = window_.block(dense.blocks[i]);
+    std::copy_n(block, saved.size(), saved.begin());
+    for (int d = 0; d < manifold->TangentSize(); ++d) {
+      const double scale = std::sqrt(dense.H(dense.offsets[i] + d, dense.offsets[i] + d));
+      const double h = 1e-4 / scale;
+      double cost[2];
+      for (int side = 0; side < 2; ++side) {
+        Eigen::VectorXd step = Eigen::VectorXd::Zero(manifold->TangentSize());
+        step[d] = side ? h : -h;
+        manifold->Plus(saved.data(), step.data(), block);
+        cost[side] = system.cost();
+      }
+      std::copy(saved.begin(), saved.end(), block);
+      EXPECT_NEAR((cost[1] - cost[0]) / (2 * h * scale), dense.b[dense.offsets[i] + d] / scale, 2e-3)
+          << "block " << i << " direction " << d;
+    }
+  }
+}
+
 TEST_F(ReducedSystemTest, FrozenBlocksAreConstants) {
   const std::set<BlockKey> frozen{{BlockKey::kExtrinsics, 0}, {BlockKey::kCorrection, 0}};
   const SlidingWindow before = window_;

@@ -9,11 +9,11 @@ namespace lintel {
 
 /// How observations become residuals.
 struct FactorParams {
-  double point_sigma_px = 0.7;     ///< standard deviation of a tracked point [px]
-  double point_loss_width = 1.5;   ///< Cauchy width, in standard deviations
-  double line_sigma_px = 1.0;      ///< scales LineObservation::sigma_px
-  double line_loss_width = 1.5;    ///< Cauchy width, in standard deviations
-  bool adaptive_weights = false;   ///< sigmas of points and lines follow their residuals, within twice and half
+  double point_sigma_px = 0.4;    ///< standard deviation of a tracked point [px]
+  double point_loss_width = 1.5;  ///< Cauchy width, in standard deviations
+  double line_sigma_px = 0.6;     ///< scales LineObservation::sigma_px
+  double line_loss_width = 1.5;   ///< Cauchy width, in standard deviations
+  double track_freedom = 4;  ///< of a track's own variance about these: the smaller, the more tracks differ (TrackLoss)
   double gyro_noise_scale = 1.0;   ///< of the rig's noise density; 1: checked against the samples (NoiseMeter)
   double accel_noise_scale = 1.0;  ///< the same; other than 1: the rig's density is taken as given
   double gyro_walk_scale = 1.0;
@@ -25,7 +25,7 @@ struct FactorParams {
     field("point_loss_width", point_loss_width, Range{0.1, 1000000});
     field("line_sigma_px", line_sigma_px, Range{0.01, 100});
     field("line_loss_width", line_loss_width, Range{0.1, 1000000});
-    field("adaptive_weights", adaptive_weights);
+    field("track_freedom", track_freedom, Range{0.1, 1000000});
     field("gyro_noise_scale", gyro_noise_scale, Range{0.001, 10000});
     field("accel_noise_scale", accel_noise_scale, Range{0.001, 10000});
     field("gyro_walk_scale", gyro_walk_scale, Range{0.001, 10000});
@@ -113,6 +113,7 @@ struct DegeneracyParams {
 struct InitializerParams {
   int min_frames = 10;               ///< window frames (estimator rate) before the first attempt
   int max_frames = 30;               ///< older ones are dropped; three seconds of a slow motion show scale and biases
+  double point_sigma_px = 0.7;       ///< of a tracked point, with the errors of the calibration, which is held [px]
   double min_parallax_px = 12;       ///< rotation-compensated, median, over the buffer; below: static or waiting
   double max_error_px = 2.0;         ///< median reprojection error of an accepted start
   double max_scale_sigma = 0.05;     ///< relative standard deviation of the scale of an accepted start
@@ -127,6 +128,7 @@ struct InitializerParams {
   void fields(F&& field) {
     field("min_frames", min_frames, Range{4, 1000});
     field("max_frames", max_frames, Range{4, 1000});
+    field("point_sigma_px", point_sigma_px, Range{0.01, 100});
     field("min_parallax_px", min_parallax_px, ReferencePixels{0.1, 1000});
     field("max_error_px", max_error_px, Range{0.1, 1000});
     field("max_scale_sigma", max_scale_sigma, Range{0.0001, 100});
