@@ -5,6 +5,7 @@
 #include <cstdio>
 
 #include "lintel/core/Quantiles.h"
+#include "lintel/geometry/Rotation.h"
 #include "lintel/geometry/SmallMatrices.h"
 
 namespace lintel::truth {
@@ -12,7 +13,7 @@ namespace lintel::truth {
 void PointErrors::add(const FrameTracks& tracks) {
   const auto T_w_b = poses_.at(tracks.t_ns);
   if (!T_w_b) return;
-  for (const PointObservation& p : tracks.points) tracks_[p.id].push_back({*T_w_b * rig_.T_b_c, p.normalised});
+  for (const PointObservation& p : tracks.points) tracks_[p.id].push_back({*T_w_b * rig_.T_b_c, p.ray});
 }
 
 /// Residuals [px] at the best place; empty when it is not in front of all cameras.
@@ -21,7 +22,7 @@ std::vector<Eigen::Vector2d> PointErrors::residualsOf(const Track& track) const 
   Eigen::Matrix3d A = Eigen::Matrix3d::Zero();
   Eigen::Vector3d b = Eigen::Vector3d::Zero();
   for (const Sighting& s : track) {
-    const Eigen::Vector3d ray = s.T_w_c.q * s.normalised.homogeneous().normalized();
+    const Eigen::Vector3d ray = s.T_w_c.q * s.ray.normalized();
     const Eigen::Matrix3d across = Eigen::Matrix3d::Identity() - ray * ray.transpose();
     A += across;
     b += across * s.T_w_c.p;
@@ -33,11 +34,15 @@ std::vector<Eigen::Vector2d> PointErrors::residualsOf(const Track& track) const 
     Eigen::Vector3d g = Eigen::Vector3d::Zero();
     for (std::size_t i = 0; i < track.size(); ++i) {
       const Eigen::Vector3d c = track[i].T_w_c.inverse() * p;
-      if (c.z() < 0.05) return {};
-      r[i] = focal * (c.head<2>() / c.z() - track[i].normalised);
-      Eigen::Matrix<double, 2, 3> J;
-      J << 1 / c.z(), 0, -c.x() / (c.z() * c.z()), 0, 1 / c.z(), -c.y() / (c.z() * c.z());
-      J = focal * J * track[i].T_w_c.R().transpose();
+      if (rig_.camera.depth(c, track[i].ray) < 0.05) return {};
+      // across the ray: in x and y, or in a basis of the plane tangent to the sphere
+      const Eigen::Vector3d n = rig_.camera.rayTo(c);
+      const bool wide = rig_.camera.wide();
+      const Eigen::Matrix<double, 3, 2> B = wide ? tangentBasis(n) : Eigen::Matrix<double, 3, 2>::Identity();
+      r[i] = focal * (B.transpose() * (n - track[i].ray));
+      Eigen::Matrix<double, 2, 3> J = B.transpose();
+      if (!wide) J.col(2) = -n.head<2>();
+      J = focal / rig_.camera.depth(c, n) * J * track[i].T_w_c.R().transpose();
       const double w = 1 / (1 + r[i].squaredNorm());
       H += w * J.transpose() * J;
       g += w * J.transpose() * r[i];

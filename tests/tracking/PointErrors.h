@@ -26,7 +26,7 @@ class PointErrors {
  private:
   struct Sighting {
     Pose T_w_c;
-    Eigen::Vector2d normalised;
+    Eigen::Vector3d ray;
   };
   using Track = std::vector<Sighting>;
 

@@ -51,7 +51,7 @@ TrueEdges::TrueEdges(const std::string& recording, const Rig& rig, const TruePos
              T = numbersOf(text, "data:"), delay = numbersOf(text, "\ndelay:");
   if (k.size() != 4 || d.size() != 4 || T.size() != 16) return;  // the rig's camera is the true one
   camera_.fx = k[0], camera_.fy = k[1], camera_.cx = k[2], camera_.cy = k[3];
-  camera_.k1 = d[0], camera_.k2 = d[1], camera_.p1 = d[2], camera_.p2 = d[3];
+  std::copy(d.begin(), d.end(), camera_.lens.begin());
   Eigen::Matrix3d R;
   R << T[0], T[1], T[2], T[4], T[5], T[6], T[8], T[9], T[10];
   T_b_c_.q = Eigen::Quaterniond(R).normalized();

@@ -10,7 +10,7 @@
 
 #include "TruePoses.h"
 #include "lintel/core/Rig.h"
-#include "lintel/geometry/PinholeRadtan.h"
+#include "lintel/geometry/Camera.h"
 #include "lintel/geometry/Pose.h"
 
 namespace lintel::truth {
@@ -30,7 +30,7 @@ class TrueEdges {
   /// `poses` must outlive this.
   TrueEdges(const std::string& recording, const Rig& rig, const TruePoses& poses);
 
-  const PinholeRadtan& camera() const { return camera_; }
+  const Camera& camera() const { return camera_; }
   /// Edges that the image of that time shows; empty without a pose for it.
   std::vector<SeenEdge> seenAt(std::int64_t t_ns) const;
   /// The infinite line of any edge at that time, seen or not; zero without a pose.
@@ -45,7 +45,7 @@ class TrueEdges {
   std::optional<Pose> poseAt(std::int64_t t_ns) const;  ///< T_c_w
   Eigen::Vector3d lineOf(const Edge& edge, const Pose& T_c_w) const;
 
-  PinholeRadtan camera_;
+  Camera camera_;
   Pose T_b_c_;
   double delay_s_ = 0;  ///< an image with stamp t shows the scene at t + delay
   std::map<int, Edge> edges_;

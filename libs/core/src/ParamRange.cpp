@@ -20,7 +20,7 @@ std::string numberText(double value) {
 
 }  // namespace
 
-double pixelScale(const PinholeRadtan& camera) {
+double pixelScale(const Camera& camera) {
   return std::max(0.25, std::round(4 * camera.meanFocal() / kReferenceFocal_px) / 4);
 }
 

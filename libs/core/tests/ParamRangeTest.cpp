@@ -42,8 +42,8 @@ std::string complaintAbout(const Outer& params) {
   return "";
 }
 
-PinholeRadtan cameraOf(double focal_px) {
-  PinholeRadtan camera;
+Camera cameraOf(double focal_px) {
+  Camera camera;
   camera.fx = camera.fy = focal_px;
   return camera;
 }

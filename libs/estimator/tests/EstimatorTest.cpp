@@ -106,13 +106,25 @@ TEST(Estimator, FollowsANoisyFlight) {
   }
 }
 
+TEST(Estimator, FollowsAFlightThroughAnyLens) {
+  for (const LensModel model : {LensModel::kRational, LensModel::kEquidistant, LensModel::kDoubleSphere}) {
+    Rig rig = eurocRig();
+    rig.camera = lensCamera(model);
+    const TrackedFlight flight = fly(ImuSimulatorParams{}, tracksFor(10, 0.5), FigureTrajectory(), rig);
+    const auto updates = run(flight);
+    EXPECT_EQ(lostOf(updates), 0);
+    EXPECT_GT(posesOf(updates), 160);
+    EXPECT_LT(positionError(updates, flight), 0.05) << static_cast<int>(model);
+  }
+}
+
 /// The flight as a front end sees it that was told another rig.
 TrackedFlight toldAnotherRig(TrackedFlight flight, const Rig& told) {
   for (SimulatedFrame& frame : flight.sim.frames) {
-    for (PointObservation& o : frame.tracks.points) o.normalised = told.camera.normalise(o.px);
+    for (PointObservation& o : frame.tracks.points) o.ray = told.camera.ray(o.px);
     for (LineObservation& o : frame.tracks.lines) {
-      o.start = told.camera.normalise(o.start_px);
-      o.end = told.camera.normalise(o.end_px);
+      o.start = told.camera.ray(o.start_px);
+      o.end = told.camera.ray(o.end_px);
     }
   }
   flight.rig = told;
@@ -124,7 +136,7 @@ TEST(Estimator, FindsTheCalibrationFromARoughOne) {
   Rig rough = flight.rig;
   rough.camera.fx *= 1.02;
   rough.camera.fy *= 1.02;
-  rough.camera.k1 = rough.camera.k2 = rough.camera.p1 = rough.camera.p2 = 0;
+  rough.camera.lens = {};
   rough.T_b_c.q = rough.T_b_c.q * expRotation(Eigen::Vector3d(0.03, -0.03, 0.03));
   rough.T_b_c.p += Eigen::Vector3d(0.02, -0.01, 0.02);
   const TrackedFlight told = toldAnotherRig(flight, rough);
@@ -135,7 +147,7 @@ TEST(Estimator, FindsTheCalibrationFromARoughOne) {
   EXPECT_LT(positionError(updates, flight), 0.1);
   const CalibrationEstimate found = estimator.calibration();
   EXPECT_NEAR(found.camera.meanFocal(), flight.rig.camera.meanFocal(), 2);
-  EXPECT_NEAR(found.camera.k1, flight.rig.camera.k1, 0.01);
+  EXPECT_NEAR(found.camera.lens[0], flight.rig.camera.lens[0], 0.01);
   EXPECT_LT(found.T_b_c.q.angularDistance(flight.rig.T_b_c.q), 0.005);
 }
 

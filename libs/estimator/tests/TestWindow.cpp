@@ -29,7 +29,7 @@ Eigen::Vector2d pixelOf(const SlidingWindow& window, FrameId id, const Eigen::Ve
   return window.camera().project(window.T_w_c(window.frame(id)).inverse() * p_w);
 }
 
-NormalisedObservation observed(const SlidingWindow& window, const Eigen::Vector2d& px) {
+RayObservation observed(const SlidingWindow& window, const Eigen::Vector2d& px) {
   return makeObservation(window.camera(), px);
 }
 
@@ -63,8 +63,10 @@ ImuSimulatorParams perfectImu() {
   return imu;
 }
 
-TrackedFlight fly(const ImuSimulatorParams& imu, TrackSimulationParams tracks, const Trajectory& trajectory) {
+TrackedFlight fly(const ImuSimulatorParams& imu, TrackSimulationParams tracks, const Trajectory& trajectory,
+                  const Rig& rig) {
   TrackedFlight flight;
+  flight.rig = rig;
   flight.sim = simulateTracks(trajectory, flight.rig, imu, tracks);
   return flight;
 }

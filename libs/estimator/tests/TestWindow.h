@@ -54,7 +54,7 @@ ImuSimulatorParams perfectImu();
 
 /// What every test flies unless it says otherwise: 10 s, no noise on the tracks.
 TrackedFlight fly(const ImuSimulatorParams& imu, TrackSimulationParams tracks = {},
-                  const Trajectory& trajectory = FigureTrajectory());
+                  const Trajectory& trajectory = FigureTrajectory(), const Rig& rig = eurocRig());
 
 /// `count` window frames, every `step`th frame of the flight from `first` on, pre-integrated with zero biases; no
 /// states, as the estimator's buffer before initialisation. Frame ids count from 0.

@@ -44,16 +44,16 @@ Rig wrongRig(const Rig& rig, const CalibrationParams& p, Draw& draw) {
   wrong.camera.fy += draw(p.focal_sigma_px);
   wrong.camera.cx += draw(p.centre_sigma_px);
   wrong.camera.cy += draw(p.centre_sigma_px);
-  wrong.camera.k1 += draw(p.distortion_sigma);
-  wrong.camera.k2 += draw(p.distortion_sigma);
+  wrong.camera.lens[0] += draw(p.distortion_sigma);
+  wrong.camera.lens[1] += draw(p.distortion_sigma);
   wrong.T_b_c.p += draw.vector(p.extrinsic_translation_sigma_m);
   wrong.T_b_c.q = wrong.T_b_c.q * expRotation(draw.vector(p.extrinsic_rotation_sigma_rad));
   return wrong;
 }
 
 /// The tracks as a front end with this camera sees them.
-FrameTracks seenWith(const PinholeRadtan& camera, FrameTracks tracks) {
-  for (PointObservation& o : tracks.points) o.normalised = camera.normalise(o.px);
+FrameTracks seenWith(const Camera& camera, FrameTracks tracks) {
+  for (PointObservation& o : tracks.points) o.ray = camera.ray(o.px);
   for (LineObservation& o : tracks.lines) {
     o.start = camera.normalise(o.start_px);
     o.end = camera.normalise(o.end_px);
@@ -69,10 +69,10 @@ Squares calibrationSquares(const CalibrationEstimate& e, const Rig& truth) {
   const auto mean = [](const Eigen::VectorXd& error, const Eigen::VectorXd& sigma) {
     return error.cwiseQuotient(sigma).squaredNorm() / static_cast<double>(error.size());
   };
-  const PinholeRadtan &c = e.camera, &t = truth.camera;
+  const Camera &c = e.camera, &t = truth.camera;
   result["focal"] = mean(Eigen::Vector2d(c.fx - t.fx, c.fy - t.fy), e.sigma->camera.head<2>());
   result["centre"] = mean(Eigen::Vector2d(c.cx - t.cx, c.cy - t.cy), e.sigma->camera.segment<2>(2));
-  result["distortion"] = mean(Eigen::Vector2d(c.k1 - t.k1, c.k2 - t.k2), e.sigma->camera.tail<2>());
+  result["distortion"] = mean(Eigen::Vector2d(c.lens[0] - t.lens[0], c.lens[1] - t.lens[1]), e.sigma->camera.tail<2>());
   result["lever arm"] = mean(e.T_b_c.p - truth.T_b_c.p, e.sigma->p_b_c_m);
   result["rotation"] = mean(logRotation(truth.T_b_c.q.conjugate() * e.T_b_c.q), e.sigma->R_b_c_rad);
   result["offset"] =

@@ -160,16 +160,23 @@ double frustumDepth(const Drawing& drawing) {
   return gaps_m.empty() ? widest_m : std::clamp(nearestQuantile(gaps_m, 0.5), 0.3 * widest_m, widest_m);
 }
 
+/// Where the image's border is on the plane z = 1, from its `distance` to the centre over the focal length: of wide
+/// lenses about the angle, drawn up to 60 degrees.
+double onPlane(const Camera& camera, double distance) {
+  constexpr double kWidest_rad = 1.0472;
+  return camera.wide() ? std::tan(std::clamp(distance, -kWidest_rad, kWidest_rad)) : distance;
+}
+
 }  // namespace
 
 std::vector<DrawnSegment> frustumSegments(const Rig& rig, const Pose& T_w_b, double depth_m, Rgb colour) {
-  const PinholeRadtan& camera = rig.camera;
+  const Camera& camera = rig.camera;
   // A map without a calibration still shows where its keyframes are: a camera of 90 degrees.
   const bool calibrated = camera.fx > 0 && camera.fy > 0 && camera.width > 0 && camera.height > 0;
-  const double right = calibrated ? (camera.width - camera.cx) / camera.fx : 1,
-               left = calibrated ? -camera.cx / camera.fx : -1;
-  const double bottom = calibrated ? (camera.height - camera.cy) / camera.fy : 1,
-               top = calibrated ? -camera.cy / camera.fy : -1;
+  const double right = calibrated ? onPlane(camera, (camera.width - camera.cx) / camera.fx) : 1,
+               left = calibrated ? onPlane(camera, -camera.cx / camera.fx) : -1;
+  const double bottom = calibrated ? onPlane(camera, (camera.height - camera.cy) / camera.fy) : 1,
+               top = calibrated ? onPlane(camera, -camera.cy / camera.fy) : -1;
   const Pose T_w_c = T_w_b * rig.T_b_c;
   const Eigen::Vector3d eye = T_w_c.p;
   std::array<Eigen::Vector3d, 4> corners{{{left, top, 1}, {right, top, 1}, {right, bottom, 1}, {left, bottom, 1}}};

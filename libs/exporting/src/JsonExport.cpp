@@ -3,6 +3,7 @@
 
 #include "Text.h"
 #include "Writers.h"
+#include "lintel/geometry/LensNames.h"
 
 namespace lintel {
 
@@ -120,10 +121,11 @@ class JsonWriter {
   }
 
   void writeRig(const Rig& rig) {
-    const PinholeRadtan& c = rig.camera;
+    const Camera& c = rig.camera;
     text_ << "{\"width\": " << c.width << ", \"height\": " << c.height;
     field("fx", c.fx), field("fy", c.fy), field("cx", c.cx), field("cy", c.cy);
-    field("k1", c.k1), field("k2", c.k2), field("p1", c.p1), field("p2", c.p2);
+    const std::vector<double> lens = lensCoefficients(c);
+    for (std::size_t i = 0; i < lens.size(); ++i) field(lensName(c.model).coefficients[i], lens[i]);
     field("camera_rate_hz", rig.camera_rate_hz), field("imu_rate_hz", rig.imu_rate_hz);
     field("gyro_noise", rig.imu_noise.gyro_noise), field("gyro_walk", rig.imu_noise.gyro_walk);
     field("accel_noise", rig.imu_noise.accel_noise), field("accel_walk", rig.imu_noise.accel_walk);

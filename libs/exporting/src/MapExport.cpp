@@ -18,6 +18,8 @@ using Layers = std::set<MapLayer>;
 const Layers kAll{MapLayer::kLines, MapLayer::kPoints, MapLayer::kKeyframes, MapLayer::kTrajectory};
 const Layers kNoPoints{MapLayer::kLines, MapLayer::kKeyframes, MapLayer::kTrajectory};
 const Layers kNoTrajectory{MapLayer::kLines, MapLayer::kPoints, MapLayer::kKeyframes};
+const Layers kPointsAndKeyframes{MapLayer::kPoints, MapLayer::kKeyframes};
+const Layers kOnlyTrajectory{MapLayer::kTrajectory};
 const Layers kOnlyLines{MapLayer::kLines};
 
 /// A form of export with the defaults under which its usual viewer shows lines.
@@ -28,6 +30,7 @@ struct Format {
   Layers layers;
   bool data;  // for programs rather than for the eye: nothing is left out
   const char* viewer;
+  bool folder = false;  // of files with fixed names
 };
 
 const std::vector<Format>& formats() {
@@ -41,6 +44,13 @@ const std::vector<Format>& formats() {
       {"3Dscene", sceneFiles, LineStyle::kLines, kAll, false, "SceneViewer3D FILE"},
       {"simplemap", simplemapFiles, LineStyle::kLines, kNoTrajectory, true,
        "MRPT's and MOLA's tools for view-based maps, e.g. observations2map"},
+      {"colmap", colmapFiles, LineStyle::kLines, kPointsAndKeyframes, true,
+       "colmap gui --import_path FILE, and what reads COLMAP's models", true},
+      {"colmaptxt", colmapTextFiles, LineStyle::kLines, kPointsAndKeyframes, true,
+       "colmap gui --import_path FILE, and what reads COLMAP's models as text", true},
+      {"tum", tumFiles, LineStyle::kLines, kOnlyTrajectory, true, "evaluation tools, e.g. evo_traj tum FILE"},
+      {"kitti", kittiFiles, LineStyle::kLines, kOnlyTrajectory, true, "evaluation tools, e.g. evo_traj kitti FILE"},
+      {"euroc", eurocFiles, LineStyle::kLines, kOnlyTrajectory, true, "evaluation tools, e.g. evo_traj euroc FILE"},
       {"dae", daeFiles, LineStyle::kLines, kNoPoints, false, "a Collada reader, e.g. f3d FILE"},
       {"x3d", x3dFiles, LineStyle::kLines, kNoPoints, false, "an X3D viewer or Blender (import X3D)"},
       {"csv", csvFiles, LineStyle::kLines, kOnlyLines, true, "any table program"},
@@ -75,6 +85,12 @@ void check(const ExportParams& params) {
     throw ExportError("the tubes' radius must be a length in metres");
   if (!(params.min_length_m >= 0)) throw ExportError("the least length of lines must be a length in metres");
   if (std::isnan(params.max_sigma_m)) throw ExportError("the greatest sigma of lines must be a length in metres");
+}
+
+void makeFolder(const std::string& path) {
+  std::error_code error;
+  std::filesystem::create_directory(path, error);
+  if (!std::filesystem::is_directory(path)) throw ExportError(path + ": cannot be made: choose another name");
 }
 
 /// All files or none: the ones beside first, as the main one refers to them.
@@ -118,8 +134,10 @@ ExportSummary exportMap(const LineMap& map, const std::string& path, const Expor
   if (!complete.layers) complete.layers = format->layers;
   const Drawing drawing = makeDrawing(map, complete, format->data);
   const OutputFiles files = format->write(drawing, path);
+  if (format->folder) makeFolder(path);
   writeAll(files);
   ExportSummary summary = drawing.summary;
+  if (format->folder) summary.files.push_back(path);
   for (const OutputFile& file : files) summary.files.push_back(file.path);
   return summary;
 }

@@ -126,7 +126,7 @@ View parallelView(const std::string& title, const Eigen::AlignedBox3d& box, cons
 }
 
 View cameraView(const std::string& title, const Rig& rig, const Pose& T_w_b, double far_m, const cv::Size& size) {
-  PinholeRadtan camera = rig.camera;
+  Camera camera = rig.camera;
   if (!(camera.fx > 0 && camera.fy > 0 && camera.width > 0 && camera.height > 0)) camera = {2, 2, 1, 1, 0.5, 0.5};
   const double scale = std::min(double(size.width) / camera.width, double(size.height) / camera.height);
   const Eigen::Vector2d focal = scale * Eigen::Vector2d(camera.fx, camera.fy);

@@ -30,5 +30,12 @@ OutputFiles simplemapFiles(const Drawing& drawing, const std::string& path);  //
 OutputFiles dxfFiles(const Drawing& drawing, const std::string& path);        // CAD, lines on layers
 OutputFiles pngFiles(const Drawing& drawing, const std::string& path);        // picture of three views
 OutputFiles htmlFiles(const Drawing& drawing, const std::string& path);       // page that shows the map in a browser
+OutputFiles tumFiles(const Drawing& drawing, const std::string& path);        // trajectory alone, as TUM's text
+OutputFiles kittiFiles(const Drawing& drawing, const std::string& path);      // trajectory alone, as KITTI's matrices
+OutputFiles eurocFiles(const Drawing& drawing, const std::string& path);      // trajectory alone, as EuRoC's states
+
+// Of folders: `path` is the folder, which holds all files.
+OutputFiles colmapFiles(const Drawing& drawing, const std::string& path);      // COLMAP's sparse model, binary
+OutputFiles colmapTextFiles(const Drawing& drawing, const std::string& path);  // the same as text
 
 }  // namespace lintel

@@ -8,6 +8,7 @@
 #include <limits>
 #include <map>
 #include <nlohmann/json.hpp>
+#include <set>
 #include <sstream>
 
 #include "Files.h"
@@ -277,23 +278,39 @@ class EveryFormat : public FolderTest, public ::testing::WithParamInterface<std:
     if (GetParam() == "html" && !std::filesystem::exists(kThreeFolder)) GTEST_SKIP() << "libjs-three is not installed";
   }
   std::string map() const { return in("map." + GetParam()); }
+
+  /// Of the file, or of all files of the folder.
+  std::string whole() const {
+    if (!std::filesystem::is_directory(map())) return content(map());
+    std::string all;
+    std::set<std::filesystem::path> files;
+    for (const auto& entry : std::filesystem::directory_iterator(map())) files.insert(entry.path());
+    for (const auto& path : files) all += path.filename().string() + content(path.string());
+    return all;
+  }
+
+  /// Lines that the form holds of `count`.
+  std::size_t linesOf(std::size_t count) const {
+    const std::set<std::string> without{"colmap", "colmaptxt", "tum", "kitti", "euroc"};
+    return without.count(GetParam()) ? 0 : count;
+  }
 };
 
 TEST_P(EveryFormat, IsTheSameFromRunToRun) {
   exportMap(kRoom, map());
-  const std::string first = content(map());
+  const std::string first = whole();
   exportMap(kRoom, map());
   EXPECT_GT(first.size(), 100u);
-  EXPECT_TRUE(content(map()) == first);
+  EXPECT_TRUE(whole() == first);
 }
 
 TEST_P(EveryFormat, TakesAnEmptyMapAndASingleLine) {
   exportMap({}, map());
-  EXPECT_GT(content(map()).size(), 40u);
+  if (linesOf(1) == 1) EXPECT_GT(whole().size(), 40u);
   LineMap one;
   addLine(one, {0, 0, 0}, {0, 0, 1}, -1);
-  EXPECT_EQ(exportMap(one, map()).lines, 1u);
-  EXPECT_GT(content(map()).size(), GetParam() == "simplemap" ? 40u : 100u);  // it holds keyframes: none
+  EXPECT_EQ(exportMap(one, map()).lines, linesOf(1));
+  if (linesOf(1) == 1) EXPECT_GT(whole().size(), GetParam() == "simplemap" ? 40u : 100u);  // it holds keyframes: none
 }
 
 TEST_P(EveryFormat, ReportsAFullDiskAndLeavesNoFile) {
@@ -310,7 +327,7 @@ TEST_P(EveryFormat, CopesWithExtremeNumbers) {
   addLine(extreme, {1e7, 1e7, 1e7}, {1e7 + 2, 1e7, 1e7}, 2000000000);
   addLine(extreme, {1e-30, 0, 0}, {2e-30, 0, 0}, -7);
   extreme.lines[0].sigma_distance_m = std::nan("");
-  EXPECT_EQ(exportMap(extreme, map()).lines, 3u);
+  EXPECT_EQ(exportMap(extreme, map()).lines, linesOf(3));
 }
 
 INSTANTIATE_TEST_SUITE_P(Export, EveryFormat, ::testing::ValuesIn(exportFormats()),

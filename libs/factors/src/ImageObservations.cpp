@@ -4,32 +4,34 @@
 #include <Eigen/LU>
 #include <algorithm>
 
+#include "lintel/geometry/Rotation.h"
+
 namespace lintel {
 
 namespace {
 
-NormalisedObservation linearised(const PinholeRadtan& camera, const Eigen::Vector2d& normalised) {
-  NormalisedObservation o;
-  o.position = normalised;
+RayObservation linearised(const Camera& camera, const Eigen::Vector2d& normalised) {
+  RayObservation o;
+  o.ray = normalised.homogeneous();
   const Eigen::Vector2d distorted = camera.distort(normalised);
-  const double r2 = normalised.squaredNorm();
   // distort(x) = (px - c) / f: both sides differentiated
-  Eigen::Matrix<double, 2, 6> d_distorted;
-  d_distorted << -distorted.x() / camera.fx, 0, -1 / camera.fx, 0, -normalised.x() * r2, -normalised.x() * r2 * r2, 0,
-      -distorted.y() / camera.fy, 0, -1 / camera.fy, -normalised.y() * r2, -normalised.y() * r2 * r2;
+  Eigen::Matrix<double, 2, kIntrinsicsSize> d_distorted;
+  d_distorted.leftCols<4>() << -distorted.x() / camera.fx, 0, -1 / camera.fx, 0, 0, -distorted.y() / camera.fy, 0,
+      -1 / camera.fy;
+  d_distorted.rightCols<2>() = -camera.coefficientJacobian(normalised);
   o.correction_jacobian.leftCols<6>() = camera.distortJacobian(normalised).inverse() * d_distorted;
   return o;
 }
 
 /// How the Jacobian of the distortion at an observation, of a fixed pixel, moves with component `k` of the correction:
 /// directly (k1 k2), and because the observation moves. Differences of a smooth function, exact to 1e-8.
-Eigen::Matrix2d distortJacobianChange(const PinholeRadtan& camera, const NormalisedObservation& o, int k) {
+Eigen::Matrix2d distortJacobianChange(const Camera& camera, const RayObservation& o, int k) {
   constexpr double kStep = 1e-4;
   const auto jacobian = [&](double by) {
-    PinholeRadtan moved = camera;
-    if (k == 4) moved.k1 += by;
-    if (k == 5) moved.k2 += by;
-    return moved.distortJacobian(o.position + by * o.correction_jacobian.col(k));
+    Camera moved = camera;
+    if (k == 4) moved.lens[0] += by;
+    if (k == 5) moved.lens[1] += by;
+    return moved.distortJacobian(o.ray.head<2>() + by * o.correction_jacobian.col(k));
   };
   const double unit = std::max(1.0, o.correction_jacobian.col(k).norm());
   const double step = kStep / unit;
@@ -37,9 +39,9 @@ Eigen::Matrix2d distortJacobianChange(const PinholeRadtan& camera, const Normali
 }
 
 /// With J = d pixel / d normalised and the unit normal n of a line, a distance h across it is h / |J^-T n| pixels.
-LineEnd makeLineEnd(const PinholeRadtan& camera, const Eigen::Vector2d& normalised, const Eigen::Vector2d& normal) {
+LineEnd makeLineEnd(const Camera& camera, const Eigen::Vector2d& normalised, const Eigen::Vector2d& normal) {
   LineEnd end;
-  static_cast<NormalisedObservation&>(end) = linearised(camera, normalised);
+  static_cast<RayObservation&>(end) = linearised(camera, normalised);
   const Eigen::DiagonalMatrix<double, 2> F(camera.fx, camera.fy);
   const Eigen::Matrix2d D = camera.distortJacobian(normalised), J_inverse = (F * D).inverse();
   const Eigen::Vector2d v = J_inverse.transpose() * normal, w = J_inverse * v;
@@ -52,19 +54,78 @@ LineEnd makeLineEnd(const PinholeRadtan& camera, const Eigen::Vector2d& normalis
   return end;
 }
 
+/// d pixel / d (along, across) at a unit ray, across being `normal` of a great circle through the ray.
+Eigen::Matrix2d tangentJacobian(const Camera& camera, const Eigen::Vector3d& ray, const Eigen::Vector3d& normal) {
+  PixelJacobians d;
+  camera.project(ray, 1, d);
+  const Eigen::Vector3d across = (normal - normal.dot(ray) * ray).normalized();
+  Eigen::Matrix2d J;
+  J << d.point * across.cross(ray), d.point * across;
+  return J;
+}
+
+RayObservation wideObservation(const Camera& camera, const Eigen::Vector3d& ray) {
+  RayObservation o;
+  o.wide = true;
+  o.ray = ray;
+  PixelJacobians d;
+  camera.project(ray, 1, d);
+  const Eigen::Matrix<double, 3, 2> B = tangentBasis(ray);
+  // of a fixed pixel: d.point B dray + d.intrinsics dc = 0
+  const Eigen::Matrix<double, 3, kIntrinsicsSize> J = -B * (d.point * B).inverse() * d.intrinsics;
+  o.correction_jacobian.leftCols<kIntrinsicsSize>() = J.topRows<2>();
+  o.z_jacobian.leftCols<kIntrinsicsSize>() = J.bottomRows<1>();
+  return o;
+}
+
+/// Pixels of a distance of 1 across the line at `ray`: as in makeLineEnd, in the plane tangent to the sphere there.
+double wideScale_px(const Camera& camera, const Eigen::Vector3d& ray, const Eigen::Vector3d& normal) {
+  const Eigen::Vector2d across = tangentJacobian(camera, ray, normal).inverse().transpose() * Eigen::Vector2d::UnitY();
+  return 1 / across.norm();
+}
+
+/// The end at `ray` of a line that ends at `other` as well.
+LineEnd wideLineEnd(const Camera& camera, const Eigen::Vector3d& ray, const Eigen::Vector3d& other) {
+  constexpr double kStep = 1e-5;  // of the intrinsics, as an angle: differences of a smooth function, exact to 1e-9
+  LineEnd end;
+  static_cast<RayObservation&>(end) = wideObservation(camera, ray);
+  end.linearised_scale_px = wideScale_px(camera, ray, ray.cross(other));
+  const RayObservation other_end = wideObservation(camera, other);
+  const auto jacobian = [](const RayObservation& o, int k) {
+    return Eigen::Vector3d(o.correction_jacobian(0, k), o.correction_jacobian(1, k), o.z_jacobian[k]);
+  };
+  for (int k = 0; k < kIntrinsicsSize; ++k) {
+    const Eigen::Vector3d J = jacobian(end, k), J_other = jacobian(other_end, k);
+    const double step = kStep / std::max({J.norm(), J_other.norm(), 1e-4});
+    const auto scale = [&](double by) {
+      Camera moved = camera;
+      moved.intrinsic(k) += by;
+      const Eigen::Vector3d at = (ray + by * J).normalized();
+      return wideScale_px(moved, at, at.cross(other + by * J_other));
+    };
+    end.log_scale_jacobian[k] = (scale(step) - scale(-step)) / (2 * step * end.linearised_scale_px);
+  }
+  return end;
+}
+
 }  // namespace
 
-NormalisedObservation makeObservation(const PinholeRadtan& calibrated, const Eigen::Vector2d& px,
-                                      const CorrectionBlock& correction) {
-  const PinholeRadtan camera = correctedCamera(calibrated, correction.data());
-  NormalisedObservation o = linearised(camera, camera.normalise(px));
+RayObservation makeObservation(const Camera& calibrated, const Eigen::Vector2d& px, const CorrectionBlock& correction) {
+  const Camera camera = correctedCamera(calibrated, correction.data());
+  RayObservation o = camera.wide() ? wideObservation(camera, camera.ray(px)) : linearised(camera, camera.normalise(px));
   o.linearised_at = correction;
   return o;
 }
 
-std::pair<LineEnd, LineEnd> makeLineEnds(const PinholeRadtan& calibrated, const Eigen::Vector2d& start_px,
+std::pair<LineEnd, LineEnd> makeLineEnds(const Camera& calibrated, const Eigen::Vector2d& start_px,
                                          const Eigen::Vector2d& end_px, const CorrectionBlock& correction) {
-  const PinholeRadtan camera = correctedCamera(calibrated, correction.data());
+  const Camera camera = correctedCamera(calibrated, correction.data());
+  if (camera.wide()) {
+    const Eigen::Vector3d start = camera.ray(start_px), end = camera.ray(end_px);
+    std::pair<LineEnd, LineEnd> ends{wideLineEnd(camera, start, end), wideLineEnd(camera, end, start)};
+    ends.first.linearised_at = ends.second.linearised_at = correction;
+    return ends;
+  }
   const Eigen::Vector2d start = camera.normalise(start_px), end = camera.normalise(end_px);
   const Eigen::Vector2d along = (end - start).normalized(), normal(-along.y(), along.x());
   std::pair<LineEnd, LineEnd> ends{makeLineEnd(camera, start, normal), makeLineEnd(camera, end, normal)};

@@ -15,14 +15,12 @@ void LineFactor::linearise(const CameraView& view, const double* correction, con
   const double cosine = std::cos(line.phi), sine = std::sin(line.phi);
   const Eigen::Vector3d n_w = cosine * U.col(0), d_w = sine * U.col(1), from_camera_w = origin_w_ - view.p_w_c;
   const Eigen::Vector3d l = view.R_c_w * (n_w + from_camera_w.cross(d_w));  // moment about the camera, its axes
-  const Eigen::Vector3d ends[2] = {start_.corrected(correction).homogeneous(),
-                                   end_.corrected(correction).homogeneous()};
-  const LineDistances distances(ends, l, 1);
+  const Eigen::Vector3d ends[2] = {start_.corrected(correction), end_.corrected(correction)};
+  const LineDistances distances(ends, l, 1, start_.wide);
   const Eigen::Vector2d scale = weight_ * Eigen::Vector2d(start_.scale_px(correction), end_.scale_px(correction));
   out.residual = scale.cwiseProduct(distances.residual);
   if (!jacobians) return;
 
-  const Eigen::Vector2d& normal = distances.normal;
   Eigen::Matrix<double, 2, 3> d_l;
   d_l << scale[0] * distances.d_l[0], scale[1] * distances.d_l[1];
   const Eigen::Matrix<double, 2, 3> d_nw = d_l * view.R_c_w;
@@ -30,7 +28,7 @@ void LineFactor::linearise(const CameraView& view, const double* correction, con
   out.d_camera.rightCols<3>() = d_l * skew(l);
   const LineEnd* seen[] = {&start_, &end_};
   for (int k = 0; k < 2; ++k)
-    out.d_intrinsics.row(k) = scale[k] * normal.transpose() * seen[k]->correction_jacobian.leftCols<kIntrinsicsSize>() +
+    out.d_intrinsics.row(k) = seen[k]->alongJacobian(scale[k] * distances.normal) +
                               weight_ * seen[k]->linearised_scale_px * distances.residual[k] *
                                   seen[k]->log_scale_jacobian.leftCols<kIntrinsicsSize>();
   const Eigen::Matrix<double, 2, 3> d_dw = d_nw * skew(from_camera_w);

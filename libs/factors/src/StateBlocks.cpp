@@ -28,13 +28,13 @@ ImuBias biasOf(const double* motion) {
   return {Eigen::Vector3d::Map(motion + kBiasGyroAt), Eigen::Vector3d::Map(motion + kBiasAccelAt)};
 }
 
-PinholeRadtan correctedCamera(PinholeRadtan camera, const double* correction) {
+Camera correctedCamera(Camera camera, const double* correction) {
   camera.fx += correction[0];
   camera.fy += correction[1];
   camera.cx += correction[2];
   camera.cy += correction[3];
-  camera.k1 += correction[4];
-  camera.k2 += correction[5];
+  camera.lens[0] += correction[4];
+  camera.lens[1] += correction[5];
   return camera;
 }
 

@@ -9,8 +9,7 @@ namespace lintel {
 
 void VanishingFactor::linearise(const CameraView& view, const double* correction, const double* direction,
                                 bool jacobians, DirectionLinearisation& out) const {
-  const Eigen::Vector3d start = start_.corrected(correction).homogeneous(),
-                        end = end_.corrected(correction).homogeneous();
+  const Eigen::Vector3d start = start_.corrected(correction), end = end_.corrected(correction);
   const Eigen::Vector3d cross = start.cross(end), d_c = view.R_c_w * Eigen::Vector3d::Map(direction);
   const double norm = std::max(cross.norm(), 1e-12);
   const Eigen::Vector3d n = cross / norm;
@@ -19,8 +18,7 @@ void VanishingFactor::linearise(const CameraView& view, const double* correction
   out.d_camera << 0, 0, 0, weight_ * n.transpose() * skew(d_c);             // R_c_w <- Exp(-dtheta) R_c_w
   const Eigen::Vector3d d_cross = weight_ / norm * (d_c - n.dot(d_c) * n);  // d r / d cross
   const Eigen::Vector3d d_start = end.cross(d_cross), d_end = d_cross.cross(start);
-  out.d_intrinsics = d_start.head<2>().transpose() * start_.correction_jacobian.leftCols<kIntrinsicsSize>() +
-                     d_end.head<2>().transpose() * end_.correction_jacobian.leftCols<kIntrinsicsSize>();
+  out.d_intrinsics = start_.alongJacobian(d_start) + end_.alongJacobian(d_end);
   out.d_target = weight_ * n.transpose() * view.R_c_w;
 }
 

@@ -40,9 +40,9 @@ void expectGradients(const ceres::CostFunction& cost, const std::vector<const ce
   }
 }
 
-NormalisedObservation observation(double x, double y) {
-  NormalisedObservation o;
-  o.position = {x, y};
+RayObservation observation(double x, double y) {
+  RayObservation o;
+  o.ray = {x, y, 1};
   o.correction_jacobian = 0.01 * ObservationJacobian::Ones();
   o.correction_jacobian(0, 2) = -0.02;
   o.correction_jacobian.col(kTimeOffsetAt).setZero();
@@ -51,7 +51,7 @@ NormalisedObservation observation(double x, double y) {
 
 LineEnd lineEnd(double x, double y, double scale_px) {
   LineEnd end;
-  static_cast<NormalisedObservation&>(end) = observation(x, y);
+  static_cast<RayObservation&>(end) = observation(x, y);
   end.linearised_scale_px = scale_px;
   end.log_scale_jacobian << 0.002, 0.003, -0.001, 0.004, 0.2, 0.1, 0;
   return end;
@@ -64,7 +64,7 @@ struct Scene {
   CorrectionBlock correction = 0.01 * CorrectionBlock::Ones();
 };
 
-PinholeRadtan eurocCamera() { return {752, 480, 458.654, 457.296, 367.215, 248.375, -0.28, 0.074, 2e-4, 1.8e-5}; }
+Camera eurocCamera() { return {752, 480, 458.654, 457.296, 367.215, 248.375, -0.28, 0.074, 2e-4, 1.8e-5}; }
 
 const FrameMotion kMotion{{0.5, -0.3, 0.8}, {0.3, -0.6, 0.2}};
 
@@ -73,7 +73,7 @@ TEST(PointFactor, HandComputed) {
   const PoseBlock right = toBlock(Pose{Eigen::Quaterniond::Identity(), {1, 0, 0}}), identity = toBlock(Pose{});
   const CorrectionBlock zero = CorrectionBlock::Zero();
   const PointBlock point(0, 0, 2, 1);
-  const PinholeRadtan camera{640, 480, 100, 100, 320, 240, 0, 0, 0, 0};
+  const Camera camera{640, 480, 100, 100, 320, 240, 0, 0, 0, 0};
   PointFactor factor({280, 250}, camera, {}, Eigen::Vector3d::Zero(), 2);
   const double* blocks[] = {right.data(), identity.data(), zero.data(), point.data()};
   Eigen::Vector2d r;
@@ -88,7 +88,7 @@ TEST(PointFactor, TimeOffsetMovesTheCamera) {
   CorrectionBlock correction = CorrectionBlock::Zero();
   correction[kTimeOffsetAt] = 0.05;
   const PointBlock point(0, 0, 2, 1);
-  const PinholeRadtan camera{640, 480, 100, 100, 320, 240, 0, 0, 0, 0};
+  const Camera camera{640, 480, 100, 100, 320, 240, 0, 0, 0, 0};
   PointFactor factor({320, 240}, camera, {{2, 0, 0}, {0, 0, 0}}, Eigen::Vector3d::Zero(), 1);
   const double* blocks[] = {identity.data(), identity.data(), correction.data(), point.data()};
   Eigen::Vector2d r;
@@ -145,7 +145,7 @@ TEST(LineFactor, GradientsFromFarToNearlyThroughTheCameraAndTheOrigin) {
 TEST(LineFactor, IsInPixelsOfTheCorrectedCamera) {
   // The distance of the observed pixels to the image of the line, near the correction about which the ends are
   // linearised, however large that is.
-  const PinholeRadtan camera = eurocCamera();
+  const Camera camera = eurocCamera();
   const PoseBlock identity = toBlock(Pose{});
   for (const Eigen::Vector2d& at : {Eigen::Vector2d(100, 60), Eigen::Vector2d(400, 250), Eigen::Vector2d(700, 420)})
     for (const double angle : {0.0, 0.7, 1.5}) {
@@ -154,7 +154,7 @@ TEST(LineFactor, IsInPixelsOfTheCorrectedCamera) {
       correction << 22, 8.5, 11, -4, 0.253, -0.062, 0;
       CorrectionBlock near;
       near << 20, 10, 10, -5, 0.25, -0.06, 0;
-      const PinholeRadtan corrected = correctedCamera(camera, correction.data());
+      const Camera corrected = correctedCamera(camera, correction.data());
       // a line through the image of two points, seen 2 px beside it
       const auto ray = [&](const Eigen::Vector2d& px) { return corrected.normalise(px).homogeneous().eval(); };
       const LineBlock line = toBlock(toOrthonormal(lineThrough(ray(at - 20 * along), ray(at + 20 * along))));
@@ -168,7 +168,7 @@ TEST(LineFactor, IsInPixelsOfTheCorrectedCamera) {
 }
 
 TEST(LineEnd, ScaleFollowsTheCorrection) {
-  const PinholeRadtan camera = eurocCamera();
+  const Camera camera = eurocCamera();
   const Eigen::Vector2d start_px(80, 50), end_px(180, 130);
   const LineEnd end = makeLineEnds(camera, start_px, end_px).first;
   for (int k = 0; k < kTimeOffsetAt; ++k) {
@@ -176,12 +176,108 @@ TEST(LineEnd, ScaleFollowsTheCorrection) {
     const auto scale = [&](double by) {
       CorrectionBlock correction = CorrectionBlock::Zero();
       correction[k] = by;
-      const PinholeRadtan moved = correctedCamera(camera, correction.data());
+      const Camera moved = correctedCamera(camera, correction.data());
       return makeLineEnds(moved, start_px, end_px).first.linearised_scale_px;
     };
     const double numeric = (scale(step) - scale(-step)) / (2 * step) / end.linearised_scale_px;
     // the line's own turn on the normalised plane is left out
     EXPECT_NEAR(end.log_scale_jacobian[k], numeric, 0.05 * std::abs(numeric) + 1e-6) << k;
+  }
+}
+
+Camera fisheye(LensModel model = LensModel::kEquidistant) {
+  Camera camera{752, 480, 259.7, 259.4, 372.3, 243.1, {0.0034824, 0.000715, -0.0020532, 0.00020294}, model};
+  if (model == LensModel::kDoubleSphere) camera.lens = {-0.1755, 0.5929};
+  if (model == LensModel::kExtendedUnified) camera.lens = {0.63, 1.04};
+  return camera;
+}
+
+// Near the axis, far to the side, and behind the plane of the lens.
+const Eigen::Vector2d kFisheyePixels[] = {{380, 250}, {80, 60}, {740, 240}, {5, 5}};
+
+TEST(PointFactor, GradientsThroughFisheyes) {
+  const Scene s;
+  const PointManifold manifold;
+  const CorrectionBlock correction = (CorrectionBlock() << 1, -1, 0.5, 2, 0.01, -0.003, 0.004).finished();
+  const Pose T_w_c = poseFromBlock(s.T_w_bi.data()) * poseFromBlock(s.T_b_c.data());
+  for (const LensModel model : {LensModel::kEquidistant, LensModel::kDoubleSphere, LensModel::kExtendedUnified})
+    for (const Eigen::Vector2d& px : kFisheyePixels) {
+      PointBlock point;
+      point << T_w_c.q * fisheye(model).ray(px), 0.3;
+      point.normalize();
+      PointFactor factor(px, fisheye(model), kMotion, T_w_c.p + Eigen::Vector3d(0.1, 0, 0), 0.7);
+      expectGradients(factor, {&kPoseManifold, &kPoseManifold, nullptr, &manifold},
+                      {s.T_w_bi.data(), s.T_b_c.data(), correction.data(), point.data()}, 1e-5);
+    }
+}
+
+TEST(MakeObservation, TheRayOfAFisheyeFollowsTheCorrection) {
+  for (const LensModel model : {LensModel::kEquidistant, LensModel::kDoubleSphere, LensModel::kExtendedUnified})
+    for (const Eigen::Vector2d& px : kFisheyePixels) {
+      const RayObservation o = makeObservation(fisheye(model), px);
+      for (int k = 0; k < kIntrinsicsSize; ++k) {
+        CorrectionBlock correction = CorrectionBlock::Zero();
+        correction[k] = k < 4 ? 0.1 : 1e-6;
+        const Eigen::Vector3d exact = correctedCamera(fisheye(model), correction.data()).ray(px);
+        EXPECT_LT((o.corrected(correction.data()) - exact).norm(), 1e-3 * (exact - o.ray).norm() + 1e-9)
+            << k << " " << px.transpose();
+      }
+    }
+}
+
+TEST(LineFactor, GradientsThroughAFisheye) {
+  const Scene s;
+  const Camera camera = fisheye();
+  const Pose T_w_c = poseFromBlock(s.T_w_bi.data()) * poseFromBlock(s.T_b_c.data());
+  for (const Eigen::Vector2d& px : kFisheyePixels) {
+    const Eigen::Vector2d end_px = px + Eigen::Vector2d(px.x() < 400 ? 90 : -90, 60);
+    const Eigen::Vector3d p0 = T_w_c * (3 * camera.ray(px)), p1 = T_w_c * (2 * camera.ray(end_px));
+    const Eigen::Vector3d origin = p0 + Eigen::Vector3d(0.1, -0.2, 0.3);
+    const LineBlock line = toBlock(toOrthonormal(movedOrigin(lineThrough(p0, p1), origin)));
+    const auto [start, end] = makeLineEnds(camera, px + Eigen::Vector2d(1, 1), end_px + Eigen::Vector2d(0, 2));
+    expectGradients(LineFactor(start, end, kMotion, origin, 0.8),
+                    {&kPoseManifold, &kPoseManifold, nullptr, &kLineManifold},
+                    {s.T_w_bi.data(), s.T_b_c.data(), s.correction.data(), line.data()}, 1e-4);
+  }
+}
+
+TEST(LineFactor, IsInPixelsOfTheCorrectedFisheye) {
+  const Camera camera = fisheye();
+  const PoseBlock identity = toBlock(Pose{});
+  for (const Eigen::Vector2d& at : {Eigen::Vector2d(380, 250), Eigen::Vector2d(80, 60), Eigen::Vector2d(700, 240)})
+    for (const double angle : {0.0, 0.7, 1.5}) {
+      const Eigen::Vector2d along(std::cos(angle), std::sin(angle)), across(-along.y(), along.x());
+      CorrectionBlock correction, near;
+      correction << 6.5, 4.5, 4, -2, 0.013, -0.006, 0;
+      near << 6, 5, 3.5, -2.5, 0.012, -0.006, 0;
+      const Camera corrected = correctedCamera(camera, correction.data());
+      const Eigen::Vector2d from = at - 3 * along, to = at + 3 * along;  // short: nearly straight in the image
+      const LineBlock line = toBlock(toOrthonormal(lineThrough(corrected.ray(from), corrected.ray(to))));
+      const auto [start, end] = makeLineEnds(camera, from + 2 * across, to + 2 * across, near);
+      const double* blocks[] = {identity.data(), identity.data(), correction.data(), line.data()};
+      Eigen::Vector2d r;
+      ASSERT_TRUE(LineFactor(start, end, {}, Eigen::Vector3d::Zero(), 0.5).Evaluate(blocks, r.data(), nullptr));
+      EXPECT_NEAR(std::abs(r[0]), 4, 0.05) << at.transpose() << " " << angle;
+      EXPECT_NEAR(std::abs(r[1]), 4, 0.05) << at.transpose() << " " << angle;
+    }
+}
+
+TEST(LineEnd, ScaleThroughAFisheyeFollowsTheCorrection) {
+  const Camera camera = fisheye();
+  for (const Eigen::Vector2d& start_px : kFisheyePixels) {
+    const Eigen::Vector2d end_px = start_px + Eigen::Vector2d(start_px.x() < 400 ? 60 : -60, 50);
+    const LineEnd end = makeLineEnds(camera, start_px, end_px).first;
+    for (int k = 0; k < kIntrinsicsSize; ++k) {
+      const double step = k < 4 ? 0.1 : 1e-4;
+      const auto scale = [&](double by) {
+        CorrectionBlock correction = CorrectionBlock::Zero();
+        correction[k] = by;
+        return makeLineEnds(correctedCamera(camera, correction.data()), start_px, end_px).first.linearised_scale_px;
+      };
+      const double numeric = (scale(step) - scale(-step)) / (2 * step) / end.linearised_scale_px;
+      EXPECT_NEAR(end.log_scale_jacobian[k], numeric, 0.01 * std::abs(numeric) + 1e-4)
+          << k << " " << start_px.transpose();
+    }
   }
 }
 

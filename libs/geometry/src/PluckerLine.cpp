@@ -32,8 +32,8 @@ OrthonormalLine toOrthonormal(const PluckerLine& line) {
   return {Eigen::Quaterniond(R).normalized(), std::atan2(d_norm, n_norm)};
 }
 
-bool closestPointToRay(const PluckerLine& line_c, const Eigen::Vector2d& normalised, Eigen::Vector3d& p_c) {
-  const Eigen::Vector3d ray = normalised.homogeneous().normalized(), d = line_c.d.normalized();
+bool closestPointToRay(const PluckerLine& line_c, const Eigen::Vector3d& ray_c, Eigen::Vector3d& p_c) {
+  const Eigen::Vector3d ray = ray_c.normalized(), d = line_c.d.normalized();
   const Eigen::Vector3d p0 = line_c.nearestPoint();
   const double cosine = ray.dot(d), denominator = 1 - cosine * cosine;
   if (denominator < 1e-18) return false;

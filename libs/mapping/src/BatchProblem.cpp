@@ -37,10 +37,10 @@ StateManifold* directionManifold() {
   return &manifold;
 }
 
-CorrectionBlock correctionOf(const PinholeRadtan& camera, const PinholeRadtan& calibrated, double time_offset_s) {
+CorrectionBlock correctionOf(const Camera& camera, const Camera& calibrated, double time_offset_s) {
   CorrectionBlock c;
   c << camera.fx - calibrated.fx, camera.fy - calibrated.fy, camera.cx - calibrated.cx, camera.cy - calibrated.cy,
-      camera.k1 - calibrated.k1, camera.k2 - calibrated.k2, time_offset_s;
+      camera.lens[0] - calibrated.lens[0], camera.lens[1] - calibrated.lens[1], time_offset_s;
   return c;
 }
 

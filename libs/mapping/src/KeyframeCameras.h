@@ -17,13 +17,13 @@ class KeyframeCameras {
   std::size_t placeOf(FrameId id) const { return static_cast<std::size_t>(places_[id]); }  ///< in material.keyframes
   const Pose& T_w_c(FrameId id) const { return T_w_c_[placeOf(id)]; }
   const Eigen::Matrix3d& R_c_w(FrameId id) const { return R_c_w_[placeOf(id)]; }
-  const PinholeRadtan& camera() const { return camera_; }
+  const Camera& camera() const { return camera_; }
 
-  /// (x/z, y/z, 1) of a raw pixel.
-  Eigen::Vector3d ray(const Eigen::Vector2d& px) const { return camera_.normalise(px).homogeneous(); }
+  /// Of a raw pixel (Camera.h).
+  Eigen::Vector3d ray(const Eigen::Vector2d& px) const { return camera_.ray(px); }
 
  private:
-  PinholeRadtan camera_;
+  Camera camera_;
   std::vector<std::int64_t> places_;  // by keyframe id, -1 = none
   std::vector<Pose> T_w_c_;
   std::vector<Eigen::Matrix3d> R_c_w_;

@@ -22,6 +22,7 @@ struct LineFitView {
   Eigen::Matrix3d R_c_w;
   Eigen::Vector3d p_w_c, ends[2];
   double weight = 0;
+  bool wide = false;
 };
 
 /// H is that of the views only; b and the cost hold the tie's part too.
@@ -36,7 +37,8 @@ std::vector<LineFitView> fitViews(const KeyframeCameras& cameras, const LineReco
     views.push_back({cameras.R_c_w(v.keyframe),
                      cameras.T_w_c(v.keyframe).p,
                      {cameras.ray(v.start_px), cameras.ray(v.end_px)},
-                     cameras.camera().meanFocal() / std::max(0.1, static_cast<double>(v.sigma_px))});
+                     cameras.camera().meanFocal() / std::max(0.1, static_cast<double>(v.sigma_px)),
+                     cameras.camera().wide()});
   }
   return views;
 }
@@ -90,7 +92,7 @@ LineNormal normalEquations(const FitData& data, const LineEstimate& line) {
   if (data.tie) addTie(*data.tie, m, d, normal);
   for (const LineFitView& v : data.views) {
     const Eigen::Vector3d arm = m - v.p_w_c;
-    const LineDistances distances(v.ends, v.R_c_w * arm.cross(d), v.weight);
+    const LineDistances distances(v.ends, v.R_c_w * arm.cross(d), v.weight, v.wide);
     Eigen::Matrix<double, 3, 4> d_l;  // of l in the camera by (a, b)
     for (int k = 0; k < 2; ++k) {
       d_l.col(k) = v.R_c_w * B.col(k).cross(d);

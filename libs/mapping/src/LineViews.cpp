@@ -39,7 +39,7 @@ double viewError(const KeyframeCameras& cameras, const LineEstimate& line, const
   const Eigen::Vector3d& p_w_c = cameras.T_w_c(view.keyframe).p;
   const Eigen::Matrix3d& R_c_w = cameras.R_c_w(view.keyframe);
   const Eigen::Vector3d l = R_c_w * (line.middle_w - p_w_c).cross(line.direction_w);
-  const double size = std::max(l.head<2>().norm(), 1e-12);
+  const double size = std::max(cameras.camera().wide() ? l.norm() : l.head<2>().norm(), 1e-12);
   double worst = 0;
   for (const Eigen::Vector2d& px : {view.start_px, view.end_px}) {
     const Eigen::Vector3d x = cameras.ray(px);

@@ -58,10 +58,9 @@ class MapDrawer {
     const Eigen::Matrix3d& R_c_w = cameras_.R_c_w(view.keyframe);
     const Eigen::Vector3d& p_w_c = cameras_.T_w_c(view.keyframe).p;
     const Eigen::Vector3d start_c = R_c_w * (segment_w.start - p_w_c), end_c = R_c_w * (segment_w.end - p_w_c);
-    // image direction of the 3D direction, at the middle: (x/z, y/z) changes along d
-    const Eigen::Vector3d m = 0.5 * (start_c + end_c), d = end_c - start_c;
-    const Eigen::Vector2d image_d = d.head<2>() * m.z() - m.head<2>() * d.z();
-    const bool turned = image_d.dot(view.end_px - view.start_px) < 0;
+    // a view and its line run the same way when their planes' normals agree
+    const Eigen::Vector3d seen = cameras_.ray(view.start_px).cross(cameras_.ray(view.end_px));
+    const bool turned = seen.dot(start_c.cross(end_c)) < 0;
     return {view.keyframe, turned ? view.end_px : view.start_px, turned ? view.start_px : view.end_px};
   }
 

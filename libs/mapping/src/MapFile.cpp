@@ -127,7 +127,7 @@ void writeMap(const LineMap& map, const std::string& path) {
     for (const MapSection& section : kMapSections) {
       ByteWriter payload;
       section.encode(map, payload);
-      writeSection(file, section.name, payload.bytes());
+      if (!payload.bytes().empty()) writeSection(file, section.name, payload.bytes());
     }
     writeSection(file, kEnd, {});
     file.commit();

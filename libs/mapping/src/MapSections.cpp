@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "MapSections.h"
 
+#include "lintel/geometry/LensNames.h"
+
 namespace lintel {
 
 namespace {
@@ -19,7 +21,7 @@ void rigFields(RigT& rig, Integer&& integer, Number&& number) {
   auto& camera = rig.camera;
   integer(camera.width), integer(camera.height);
   number(camera.fx), number(camera.fy), number(camera.cx), number(camera.cy);
-  number(camera.k1), number(camera.k2), number(camera.p1), number(camera.p2);
+  for (int i = 0; i < 4; ++i) number(camera.lens[static_cast<std::size_t>(i)]);
   number(rig.camera_rate_hz), number(rig.imu_rate_hz);
   auto& noise = rig.imu_noise;
   number(noise.gyro_noise), number(noise.gyro_walk), number(noise.accel_noise), number(noise.accel_walk);
@@ -35,6 +37,21 @@ void decodeRig(ByteReader& in, LineMap& map) {
   rigFields(
       map.rig, [&](int& v) { v = in.i32(); }, [&](double& v) { v = in.f64(); });
   map.rig.T_b_c = in.pose();
+}
+
+/// Nothing for a lens that RIG_ describes.
+void encodeLens(const LineMap& map, ByteWriter& out) {
+  const Camera& camera = map.rig.camera;
+  if (camera.model == LensModel::kRadialTangential && camera.lens[4] == 0) return;
+  out.text(lensName(camera.model).name);
+  for (const double coefficient : camera.lens) out.f64(coefficient);
+}
+
+void decodeLens(ByteReader& in, LineMap& map) {
+  const auto model = lensModel(in.text());
+  if (!model) throw ByteReaderError("names a lens model that this version does not have");
+  map.rig.camera.model = *model;
+  for (double& coefficient : map.rig.camera.lens) coefficient = in.f64();
 }
 
 void encodeConfiguration(const LineMap& map, ByteWriter& out) { out.text(map.configuration); }
@@ -129,6 +146,7 @@ void decodeGroups(ByteReader& in, LineMap& map) {
 }  // namespace
 
 const MapSection kMapSections[kMapSectionCount] = {{"RIG_", encodeRig, decodeRig},
+                                                   {"LENS", encodeLens, decodeLens},
                                                    {"CONF", encodeConfiguration, decodeConfiguration},
                                                    {"SRC_", encodeSource, decodeSource},
                                                    {"KEYF", encodeKeyframes, decodeKeyframes},

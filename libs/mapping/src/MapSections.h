@@ -11,7 +11,7 @@ namespace lintel {
 
 /// One section of the native map file: its name of four characters and how it becomes bytes and comes back.
 /// A section's layout never changes once released: what is added later goes into a section with a new name, which
-/// earlier readers skip; what is replaced raises the file's version.
+/// earlier readers skip; what is replaced raises the file's version. A section of no bytes is not written.
 struct MapSection {
   std::string_view name;
   void (*encode)(const LineMap& map, ByteWriter& out);
@@ -19,7 +19,7 @@ struct MapSection {
 };
 
 /// All sections in the order in which they are written.
-constexpr std::size_t kMapSectionCount = 8;
+constexpr std::size_t kMapSectionCount = 9;
 extern const MapSection kMapSections[kMapSectionCount];
 
 }  // namespace lintel

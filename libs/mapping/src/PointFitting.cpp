@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "lintel/geometry/Rotation.h"
 #include "lintel/geometry/SmallLeastSquares.h"
 #include "lintel/geometry/SmallMatrices.h"
 
@@ -13,8 +14,7 @@ namespace {
 
 struct PointFitView {
   Eigen::Matrix3d R_c_w;
-  Eigen::Vector3d p_w_c;
-  Eigen::Vector2d seen;
+  Eigen::Vector3d p_w_c, seen;
 };
 
 /// The point is X / w from `origin_w`, |(X, w)| free: with w = 1 / distance far points stay well behaved. Here as
@@ -25,20 +25,24 @@ struct Homogeneous {
 };
 
 /// The cost is infinite when the point is not in front of all cameras.
-NormalEquations4 normalEquations(const std::vector<PointFitView>& views, const Eigen::Vector3d& origin_w,
-                                 const Homogeneous& point, double weight, double loss_width) {
+NormalEquations4 normalEquations(const Camera& camera, const std::vector<PointFitView>& views,
+                                 const Eigen::Vector3d& origin_w, const Homogeneous& point, double weight,
+                                 double loss_width) {
   NormalEquations4 normal;
   const double width2 = loss_width * loss_width;
   for (const PointFitView& v : views) {
     const Eigen::Vector3d baseline = v.R_c_w * (origin_w - v.p_w_c), g = v.R_c_w * point.X + point.w * baseline;
-    if (g.z() < 1e-3) {
+    if (camera.depth(g, v.seen) < 1e-3) {
       normal.cost = std::numeric_limits<double>::infinity();
       return normal;
     }
-    const Eigen::Vector2d n = g.head<2>() / g.z(), r = weight * (n - v.seen);
-    Eigen::Matrix<double, 2, 3> d_g;
-    d_g << 1, 0, -n.x(), 0, 1, -n.y();
-    d_g *= weight / g.z();
+    // the residual in two directions across the ray: x and y, or a basis of the plane tangent to the sphere
+    const Eigen::Vector3d n = camera.rayTo(g);
+    const Eigen::Matrix<double, 3, 2> B = camera.wide() ? tangentBasis(n) : Eigen::Matrix<double, 3, 2>::Identity();
+    const Eigen::Vector2d r = weight * (B.transpose() * (n - v.seen));
+    Eigen::Matrix<double, 2, 3> d_g = B.transpose();
+    if (!camera.wide()) d_g.col(2) = -n.head<2>();
+    d_g *= weight / camera.depth(g, n);
     Eigen::Matrix<double, 2, 4> J;
     J << d_g * v.R_c_w, d_g * baseline;
     const double s = r.squaredNorm() / width2, w = 1 / (1 + s);
@@ -56,7 +60,7 @@ double linearInverseDistance(const std::vector<PointFitView>& views, const Eigen
                              const Eigen::Vector3d& ray_w) {
   double ab = 0, bb = 0;  // x_j x (ray + w baseline) = 0
   for (const PointFitView& v : views) {
-    const Eigen::Vector3d x = v.seen.homogeneous().normalized();
+    const Eigen::Vector3d x = v.seen.normalized();
     const Eigen::Vector3d a = x.cross(v.R_c_w * ray_w), b = x.cross(v.R_c_w * (origin_w - v.p_w_c));
     ab += a.dot(b);
     bb += b.squaredNorm();
@@ -64,20 +68,21 @@ double linearInverseDistance(const std::vector<PointFitView>& views, const Eigen
   return bb > 0 ? -ab / bb : 0;
 }
 
-bool estimate(const std::vector<PointFitView>& views, const PointFitParams& params, double focal, PointRecord& point) {
+bool estimate(const Camera& camera, const std::vector<PointFitView>& views, const PointFitParams& params,
+              PointRecord& point) {
   const Eigen::Vector3d origin_w = views.front().p_w_c;
   Homogeneous h;
-  h.X = (views.front().R_c_w.transpose() * views.front().seen.homogeneous()).normalized();
+  h.X = (views.front().R_c_w.transpose() * views.front().seen).normalized();
   h.w = std::clamp(linearInverseDistance(views, origin_w, h.X), 1 / params.max_depth_m, 1 / params.min_depth_m);
   if (point.known) {  // the former estimate may be the better start
     const Eigen::Vector3d arm = point.p_w - origin_w;
     if (arm.norm() > params.min_depth_m) h = {arm.normalized(), 1 / arm.norm()};
   }
-  const double weight = focal / params.sigma_px;
+  const double weight = camera.meanFocal() / params.sigma_px;
   LevenbergParams levenberg;
   levenberg.max_iterations = 12;
   const auto linearise = [&](const Homogeneous& p) {
-    return normalEquations(views, origin_w, p, weight, params.loss_width);
+    return normalEquations(camera, views, origin_w, p, weight, params.loss_width);
   };
   const auto moved = [](const Homogeneous& p, const Eigen::Vector4d& step) {
     Homogeneous result{p.X + step.head<3>(), p.w + step[3]};
@@ -98,7 +103,8 @@ bool estimate(const std::vector<PointFitView>& views, const PointFitParams& para
 
 double viewError(const KeyframeCameras& cameras, const Eigen::Vector3d& p_w, const PointView& view) {
   const Eigen::Vector3d p_c = cameras.R_c_w(view.keyframe) * (p_w - cameras.T_w_c(view.keyframe).p);
-  if (p_c.z() < 0.05) return std::numeric_limits<double>::infinity();
+  const double depth_m = cameras.camera().wide() ? p_c.dot(cameras.ray(view.px)) : p_c.z();
+  if (depth_m < 0.05) return std::numeric_limits<double>::infinity();
   return (cameras.camera().project(p_c) - view.px).norm();
 }
 
@@ -108,9 +114,8 @@ bool fitPoint(const KeyframeCameras& cameras, const PointFitParams& params, Poin
   for (int pass = 0; pass < 3; ++pass) {
     std::vector<PointFitView> views;
     for (const PointView& v : point.views)
-      if (v.inlier)
-        views.push_back({cameras.R_c_w(v.keyframe), cameras.T_w_c(v.keyframe).p, cameras.camera().normalise(v.px)});
-    found = views.size() >= 2 && estimate(views, params, cameras.camera().meanFocal(), point);
+      if (v.inlier) views.push_back({cameras.R_c_w(v.keyframe), cameras.T_w_c(v.keyframe).p, cameras.ray(v.px)});
+    found = views.size() >= 2 && estimate(cameras.camera(), views, params, point);
     if (!found) break;
     point.known = true;
     bool changed = false;

@@ -18,8 +18,18 @@ constexpr double kLeastShare = 0.9;  // of those, in which the point is on the l
 constexpr double kMostSigma = 0.05;  // of a point's place, of its distance
 constexpr double kAgree = 2.5;       // standard deviations between points on one line
 
-/// Distance of a pixel from a segment; infinity beyond its ends.
-double distanceFrom(const LineView& view, const Eigen::Vector2d& px) {
+/// Distance of a pixel from a segment; infinity beyond its ends. Through a wide lens a segment is an arc of a great
+/// circle.
+double distanceFrom(const KeyframeCameras& cameras, const LineView& view, const Eigen::Vector2d& px) {
+  if (cameras.camera().wide()) {
+    const Eigen::Vector3d start = cameras.ray(view.start_px), end = cameras.ray(view.end_px), x = cameras.ray(px);
+    const Eigen::Vector3d normal = start.cross(end).normalized(), along = normal.cross(start);
+    const double length = std::atan2(along.dot(end), start.dot(end)), place = std::atan2(along.dot(x), start.dot(x));
+    const double reach = kBeyond_px / cameras.camera().meanFocal();
+    if (!(place >= -reach && place <= length + reach) || length * cameras.camera().meanFocal() < 1)
+      return std::numeric_limits<double>::infinity();
+    return std::abs(normal.dot(x)) * cameras.camera().meanFocal();
+  }
   const Eigen::Vector2d along = view.end_px - view.start_px;
   const double length2 = along.squaredNorm(), u = (px - view.start_px).dot(along);
   const double reach = kBeyond_px * std::sqrt(length2);
@@ -57,7 +67,7 @@ std::vector<PointOnLine> PointsOnLines::seenOn(const LineRecord& line, const Eig
     for (const Sighting& s : seen_[v.keyframe]) {
       Count& count = counts[s.point];
       ++count.shared;
-      count.on += distanceFrom(v, s.px) <= kOn_px;
+      count.on += distanceFrom(cameras_, v, s.px) <= kOn_px;
     }
   }
   std::vector<PointOnLine> result;

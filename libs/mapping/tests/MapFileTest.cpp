@@ -59,6 +59,19 @@ LineMap sampleMap() {
   return map;
 }
 
+TEST_F(MapFile, OtherLensesReturn) {
+  for (const LensModel model : {LensModel::kRadialTangential, LensModel::kRational, LensModel::kEquidistant,
+                                LensModel::kDoubleSphere, LensModel::kExtendedUnified}) {
+    LineMap map = sampleMap();
+    map.rig.camera.model = model;
+    map.rig.camera.lens = {0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8};
+    writeMap(map, path_);
+    const LineMap back = readMap(path_);
+    EXPECT_EQ(back.rig.camera.model, model);
+    EXPECT_EQ(back.rig.camera.lens, map.rig.camera.lens);
+  }
+}
+
 TEST_F(MapFile, EveryValueReturnsToTheBit) {
   const LineMap map = sampleMap();
   writeMap(map, path_);
@@ -70,7 +83,7 @@ TEST_F(MapFile, EveryValueReturnsToTheBit) {
   EXPECT_EQ(back.configuration, map.configuration);
   EXPECT_EQ(back.source, "MH_01_easy");
   EXPECT_EQ(back.rig.camera.width, 752);
-  EXPECT_EQ(back.rig.camera.p2, 1.76187114e-05);
+  EXPECT_EQ(back.rig.camera.lens[3], 1.76187114e-05);
   EXPECT_EQ(back.rig.T_b_c.q.coeffs(), map.rig.T_b_c.q.coeffs());
   EXPECT_EQ(back.rig.imu_noise.accel_walk, 4e-6);
   EXPECT_EQ(back.rig.imu_noise.accel_noise, 3e-5);

@@ -93,7 +93,7 @@ class Adviser {
   }
 
   void calibration() {
-    const PinholeRadtan &before = calibration_.camera, &after = result_.rig.camera;
+    const Camera &before = calibration_.camera, &after = result_.rig.camera;
     if (s_.frames_with_pose == 0 || before.fx <= 0) return;
     const double focal = after.meanFocal() / before.meanFocal() - 1;
     if (std::abs(focal) > kFocalChange)

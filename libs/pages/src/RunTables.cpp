@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "Degrees.h"
+#include "lintel/geometry/LensNames.h"
 #include "lintel/geometry/Rotation.h"
 
 namespace lintel {
@@ -36,13 +37,14 @@ Table calibrationTable(const RunRecord& record, const OdometryResult& result) {
   const CalibrationEstimate& last = result.window_calibration;
   const CalibrationSigma sigma = last.sigma.value_or(CalibrationSigma());
   CalibrationRows rows(last.sigma.has_value(), result.refinement.accepted);
-  const PinholeRadtan &a = record.calibration.camera, &b = last.camera, &c = result.rig.camera;
+  const Camera &a = record.calibration.camera, &b = last.camera, &c = result.rig.camera;
   rows.add("fx [px]", a.fx, b.fx, sigma.camera[0], c.fx, 2);
   rows.add("fy [px]", a.fy, b.fy, sigma.camera[1], c.fy, 2);
   rows.add("cx [px]", a.cx, b.cx, sigma.camera[2], c.cx, 2);
   rows.add("cy [px]", a.cy, b.cy, sigma.camera[3], c.cy, 2);
-  rows.add("k1", a.k1, b.k1, sigma.camera[4], c.k1, 4);
-  rows.add("k2", a.k2, b.k2, sigma.camera[5], c.k2, 4);
+  for (std::size_t i = 0; i < 2; ++i)
+    rows.add(lensName(a.model).coefficients[i], a.lens[i], b.lens[i], sigma.camera[4 + static_cast<int>(i)], c.lens[i],
+             4);
   const Pose &given = record.calibration.T_b_c, &window = last.T_b_c, &batch = result.rig.T_b_c;
   for (int axis = 0; axis < 3; ++axis)
     rows.add(std::string("camera on the IMU, ") + "xyz"[axis] + " [m]", given.p[axis], window.p[axis],

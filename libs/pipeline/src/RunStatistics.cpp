@@ -6,6 +6,8 @@
 #include <algorithm>
 #include <nlohmann/json.hpp>
 
+#include "lintel/geometry/LensNames.h"
+
 namespace lintel {
 
 namespace {
@@ -68,9 +70,10 @@ Json refinementJson(const OdometryResult& result) {
           {"turned_rad", r.turned_rad}};
 }
 
-Json cameraJson(const PinholeRadtan& c, const Pose& T_b_c, double time_offset_s) {
+Json cameraJson(const Camera& c, const Pose& T_b_c, double time_offset_s) {
   return {{"intrinsics_px", {c.fx, c.fy, c.cx, c.cy}},
-          {"distortion", {c.k1, c.k2, c.p1, c.p2}},
+          {"lens", lensName(c.model).name},
+          {"distortion", lensCoefficients(c)},
           {"p_b_c_m", {T_b_c.p.x(), T_b_c.p.y(), T_b_c.p.z()}},
           {"q_b_c_xyzw", {T_b_c.q.x(), T_b_c.q.y(), T_b_c.q.z(), T_b_c.q.w()}},
           {"time_offset_s", time_offset_s}};

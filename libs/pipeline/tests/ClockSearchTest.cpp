@@ -57,7 +57,7 @@ class TurningRecording : public Recording {
   }
   std::shared_ptr<const GrayImage> imageAt(double t_s) const {
     const Eigen::Matrix3d R_w_c = (R_w_b(t_s) * rig_.T_b_c.q).toRotationMatrix();
-    const PinholeRadtan& camera = rig_.camera;
+    const Camera& camera = rig_.camera;
     auto image = std::make_shared<GrayImage>(GrayImage{camera.width, camera.height, {}});
     for (int y = 0; y < camera.height; ++y)
       for (int x = 0; x < camera.width; ++x) {

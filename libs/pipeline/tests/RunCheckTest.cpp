@@ -14,7 +14,7 @@ namespace {
 Rig givenRig() {
   Rig rig;
   rig.camera.fx = rig.camera.fy = 458;
-  rig.camera.k1 = -0.28;
+  rig.camera.lens[0] = -0.28;
   return rig;
 }
 
@@ -76,7 +76,7 @@ TEST(RunCheck, ADivergedRunIsNoGoodOne) {
 TEST(RunCheck, ACalibrationThatTheEstimateLeft) {
   Rig estimated = givenRig();
   estimated.camera.fx = estimated.camera.fy = 458 * 1.02;  // a roughly known one
-  estimated.camera.k1 = 0.02;                              // the distortion is found from none given
+  estimated.camera.lens[0] = 0.02;                         // the distortion is found from none given
   EXPECT_EQ(verdictOf(9.81, 0, 0, 1, estimated), "");
   estimated.camera.fx = estimated.camera.fy = 458 * 0.88;
   EXPECT_NE(verdictOf(9.81, 0, 0, 1, estimated).find("focal length -12 %"), std::string::npos);

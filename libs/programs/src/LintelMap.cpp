@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <filesystem>
 #include <map>
+#include <optional>
 #include <ostream>
 #include <stdexcept>
 #include <string>
@@ -11,8 +12,11 @@
 
 #include "CommandLine.h"
 #include "ProgramMain.h"
+#include "RecordingOptions.h"
+#include "lintel/exporting/ColmapImages.h"
 #include "lintel/exporting/MapExport.h"
 #include "lintel/mapping/MapFile.h"
+#include "lintel/sensing/Recording.h"
 
 namespace lintel {
 
@@ -52,10 +56,13 @@ class LintelMap {
       if (!viewerHint(extensionOf(output)).empty()) continue;
       throw UsageError("no form of export has the extension of " + output + "; take one of " + formats());
     }
+    if (images_.empty() != images_of_.empty())
+      throw UsageError("--images DIR and --recording INPUT belong together; give both");
     checkOutputs();
     const ExportParams params = exportParams();
     const LineMap map = readMap(input_);
     for (const std::string& output : outputs_) report(exportMap(map, output, params));
+    if (!images_of_.empty()) writeImages(map);
     return 0;
   }
 
@@ -72,13 +79,14 @@ class LintelMap {
            "  lintel-map map.lintel -o map.ply                       tubes, as MeshLab shows no lines\n"
            "  lintel-map map.lintel -o map.png --colour height       a picture: above, first camera, side\n"
            "  lintel-map map.lintel -o map.csv --min-observations 5  a table of the well-seen lines\n"
+           "  lintel-map map.lintel -o map.colmap --images images --recording flight.bag   for COLMAP\n"
            "  lintel-map map.lintel -o map.obj --layers lines,trajectory --radius 0.01";
   }
 
   void checkOutputs() const {
     if (overwrite_) return;
     for (const std::string& output : outputs_)
-      if (std::filesystem::is_regular_file(output))
+      if (std::filesystem::is_regular_file(output) || std::filesystem::is_directory(output))
         throw std::runtime_error(output + ": exists already; choose another name or add -w");
   }
 
@@ -109,8 +117,26 @@ class LintelMap {
         .oneWord()
         .oneOf(namesOf(kLayers))
         .type("LAYERS");
+    line_.option("--images", images_, "Write the images of the keyframes to this folder, under COLMAP's names")
+        .type("DIR");
+    line_.option("--recording", images_of_, "With --images: the recording of the map").type("INPUT");
+    addRecordingOptions(line_, recording_params_);
     line_.flag("-w,--overwrite", overwrite_, "Replace files that exist already");
     line_.flag("-q,--quiet", quiet_, "Print nothing");
+  }
+
+  void writeImages(const LineMap& map) {
+    const auto recording = openRecording(images_of_, recording_params_);
+    const auto next = [&]() -> std::optional<Frame> {
+      auto step = recording->next();
+      if (!step) return std::nullopt;
+      return step->frame;
+    };
+    const std::size_t written = writeColmapImages(map, images_, next);
+    if (written < map.keyframes.size())
+      throw std::runtime_error(images_of_ + ": has images of " + std::to_string(written) + " of " +
+                               std::to_string(map.keyframes.size()) + " keyframes: give the recording of this map");
+    if (!quiet_) out_ << images_ << ": " << written << " images of keyframes\n";
   }
 
   ExportParams exportParams() const {
@@ -144,7 +170,8 @@ class LintelMap {
   std::ostream& out_;
   std::ostream& err_;
   CommandLine line_{kName, "Writes a line map in a form that other programs open."};
-  std::string input_, style_, colour_ = "kind";
+  RecordingParams recording_params_;
+  std::string input_, images_, images_of_, style_, colour_ = "kind";
   std::vector<std::string> outputs_, layers_;
   ExportParams params_;
   bool overwrite_ = false, quiet_ = false;

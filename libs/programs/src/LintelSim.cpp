@@ -82,6 +82,13 @@ class LintelSim {
   }
 
   void addFaultOptions() {
+    line_
+        .option(
+            "--lens", params_.lens,
+            "Lens of the camera: that of EuRoC without or with its distortion, another model, or a fisheye of 166 x "
+            "107 degrees (equidistant, double-sphere, eucm)")
+        .oneOf({"none", "radial-tangential", "rational", "equidistant", "double-sphere", "eucm"})
+        .showDefault();
     CameraSensorParams& camera = params_.camera;
     const auto number = [this](const char* name, double& value, const char* help) {
       return line_.option(name, value, help).notNegative().showDefault();

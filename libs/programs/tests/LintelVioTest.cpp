@@ -85,6 +85,21 @@ class LintelVioTest : public testing::Test {
   static inline ProgramRun reference_;
 };
 
+TEST_F(LintelVioTest, InfoDescribesARecordingAndSavesItsRig) {
+  const std::string rig = *work_ / "rig.yaml";
+  const ProgramRun info = runVio({recording(), "--info", "--save-calibration", rig});
+  EXPECT_EQ(info.exit_code, 0) << info.err;
+  EXPECT_THAT(info.out, HasSubstr("cam0"));
+  EXPECT_THAT(info.out, HasSubstr("20.0 Hz  images"));
+  EXPECT_THAT(info.out, HasSubstr("looks along"));
+  EXPECT_EQ(runVio({recording(), "--info", "--save-calibration", rig}).exit_code, 1);  // exists
+  const ProgramRun again = runVio({"--info", "--calibration", rig, "--save-calibration", rig, "--form", "vins", "-w"});
+  EXPECT_EQ(again.exit_code, 0) << again.err;
+  EXPECT_EQ(again.out, info.out.substr(info.out.find("camera: ")));
+  EXPECT_THAT(bytesOf(rig), HasSubstr("!!opencv-matrix"));
+  EXPECT_EQ(runVio({"--info"}).exit_code, 2);
+}
+
 TEST_F(LintelVioTest, WritesWhatItPromisesAndSaysSo) {
   const StampedPoses trajectory = readTrajectory(out("reference") + "/trajectory.tum");
   EXPECT_GE(trajectory.size(), 30u);

@@ -1,9 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <cmath>
 #include <stdexcept>
+#include <utility>
+#include <vector>
 
 #include "ExactText.h"
+#include "lintel/geometry/LensNames.h"
 #include "lintel/sensing/Calibration.h"
+#include "lintel/sensing/Recording.h"
 
 namespace lintel {
 namespace {
@@ -28,17 +32,62 @@ Eigen::Matrix4d matrixOf(const Pose& pose) {
   return T;
 }
 
+std::string list(const std::vector<double>& values) {
+  return list(Eigen::Map<const Eigen::RowVectorXd>(values.data(), static_cast<Eigen::Index>(values.size())));
+}
+
+[[noreturn]] void refuseLens(const Camera& camera, const char* form) {
+  throw RecordingError(std::string(form) + " has no place for the lens model " + lensName(camera.model).name +
+                       (camera.model == LensModel::kRadialTangential ? " with k3" : "") + ": choose another form");
+}
+
+/// Model, intrinsics and distortion.
+std::string kalibrCamera(const Camera& c) {
+  std::vector<double> intrinsics{c.fx, c.fy, c.cx, c.cy}, lens = lensCoefficients(c);
+  std::string model = "pinhole", distortion = c.wide() ? "equidistant" : "radtan";
+  if (c.model >= LensModel::kDoubleSphere) {  // a model of its own: its coefficients come first
+    model = c.model == LensModel::kDoubleSphere ? "ds" : "eucm";
+    distortion = "none";
+    intrinsics.insert(intrinsics.begin(), lens.begin(), lens.end());
+    lens.clear();
+  } else if (lens.size() != 4) {
+    refuseLens(c, "Kalibr's form");
+  }
+  return "  camera_model: " + model + "\n  distortion_model: " + distortion + "\n  intrinsics: " + list(intrinsics) +
+         "\n  distortion_coeffs: " + list(lens) + "\n";
+}
+
+/// The same; coefficients and focal lengths of equidistant cameras have names of their own.
+std::string vinsCamera(const Camera& c) {
+  const std::vector<double> k = lensCoefficients(c);
+  if (c.model >= LensModel::kDoubleSphere || k.size() != 4) refuseLens(c, "VINS' form");
+  const auto numbers = [&](const char* head, const std::vector<std::pair<const char*, double>>& values) {
+    std::string text = std::string(head) + ":\n";
+    for (const auto& [key, value] : values) text += std::string("  ") + key + ": " + exactText(value) + "\n";
+    return text;
+  };
+  if (c.wide())
+    return numbers("projection_parameters", {{"k2", k[0]},
+                                             {"k3", k[1]},
+                                             {"k4", k[2]},
+                                             {"k5", k[3]},
+                                             {"mu", c.fx},
+                                             {"mv", c.fy},
+                                             {"u0", c.cx},
+                                             {"v0", c.cy}});
+  return numbers("distortion_parameters", {{"k1", k[0]}, {"k2", k[1]}, {"p1", k[2]}, {"p2", k[3]}}) +
+         numbers("projection_parameters", {{"fx", c.fx}, {"fy", c.fy}, {"cx", c.cx}, {"cy", c.cy}});
+}
+
 std::string kalibrForm(const Rig& rig, double time_shift_s) {
-  const PinholeRadtan& c = rig.camera;
+  const Camera& c = rig.camera;
   const Eigen::Matrix4d T_b_c = matrixOf(rig.T_b_c);
   std::string text = "cam0:\n  T_imu_cam:\n";
   for (Eigen::Index i = 0; i < 4; ++i) text += "  - [" + row(T_b_c, i) + "]\n";
   text += "  T_cam_imu:\n";
   const Eigen::Matrix4d T_c_b = matrixOf(rig.T_b_c.inverse());
   for (Eigen::Index i = 0; i < 4; ++i) text += "  - [" + row(T_c_b, i) + "]\n";
-  text += "  camera_model: pinhole\n  distortion_model: radtan\n";
-  text += "  intrinsics: " + list(Eigen::RowVector4d(c.fx, c.fy, c.cx, c.cy)) + "\n";
-  text += "  distortion_coeffs: " + list(Eigen::RowVector4d(c.k1, c.k2, c.p1, c.p2)) + "\n";
+  text += kalibrCamera(c);
   text += "  resolution: [" + std::to_string(c.width) + ", " + std::to_string(c.height) + "]\n";
   text += "  rate_hz: " + exactText(rig.camera_rate_hz) + "\n";
   text += "  timeshift_cam_imu: " + exactText(time_shift_s) + "\n";
@@ -55,14 +104,12 @@ std::string matrixOfOpenCv(const std::string& key, const Eigen::MatrixXd& matrix
 }
 
 std::string vinsForm(const Rig& rig, double time_shift_s) {
-  const PinholeRadtan& c = rig.camera;
+  const Camera& c = rig.camera;
   const double from_density = std::sqrt(200.0);  // VINS takes discrete noise; see readVinsForm
-  std::string text = "%YAML:1.0\n---\nmodel_type: PINHOLE\ncamera_name: cam0\n";
+  std::string text =
+      std::string("%YAML:1.0\n---\nmodel_type: ") + (c.wide() ? "KANNALA_BRANDT" : "PINHOLE") + "\ncamera_name: cam0\n";
   text += "image_width: " + std::to_string(c.width) + "\nimage_height: " + std::to_string(c.height) + "\n";
-  text += "distortion_parameters:\n  k1: " + exactText(c.k1) + "\n  k2: " + exactText(c.k2) +
-          "\n  p1: " + exactText(c.p1) + "\n  p2: " + exactText(c.p2) + "\n";
-  text += "projection_parameters:\n  fx: " + exactText(c.fx) + "\n  fy: " + exactText(c.fy) +
-          "\n  cx: " + exactText(c.cx) + "\n  cy: " + exactText(c.cy) + "\n";
+  text += vinsCamera(c);
   text += matrixOfOpenCv("extrinsicRotation", rig.T_b_c.q.toRotationMatrix());
   text += matrixOfOpenCv("extrinsicTranslation", rig.T_b_c.p);
   text += "acc_n: " + exactText(rig.imu_noise.accel_noise * from_density) +

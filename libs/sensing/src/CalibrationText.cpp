@@ -2,6 +2,7 @@
 #include <cmath>
 #include <sstream>
 
+#include "lintel/geometry/LensNames.h"
 #include "lintel/sensing/Calibration.h"
 
 namespace lintel {
@@ -43,7 +44,7 @@ void doubtNoise(const ImuNoise& noise, std::vector<std::string>& doubts) {
                        rounded(range.min, 2) + " to " + rounded(range.max, 2) + "): check its unit");
 }
 
-void doubtCamera(const PinholeRadtan& camera, std::vector<std::string>& doubts) {
+void doubtCamera(const Camera& camera, std::vector<std::string>& doubts) {
   const double width = camera.width, height = camera.height;
   if (std::abs(camera.cx / width - 0.5) > 0.2 || std::abs(camera.cy / height - 0.5) > 0.2)
     doubts.push_back("the principal point (" + rounded(camera.cx, 4) + ", " + rounded(camera.cy, 4) +
@@ -55,6 +56,24 @@ void doubtCamera(const PinholeRadtan& camera, std::vector<std::string>& doubts) 
   if (camera.fx < 0.2 * width || camera.fx > 5 * width)
     doubts.push_back("a focal length of " + rounded(camera.fx, 4) + " px is strange for an image " +
                      std::to_string(camera.width) + " px wide: is the calibration of another image size?");
+}
+
+/// Between a pixel and the optical axis [rad]; of lenses that are not wide without distortion.
+double angleAt(const Camera& camera, const Eigen::Vector2d& px) {
+  if (camera.wide()) {
+    const Eigen::Vector3d ray = camera.ray(px);
+    return std::atan2(ray.head<2>().norm(), ray.z());
+  }
+  return std::atan(std::hypot((px.x() - camera.cx) / camera.fx, (px.y() - camera.cy) / camera.fy));
+}
+
+std::string lensInWords(const Camera& camera) {
+  const LensName& lens = lensName(camera.model);
+  std::string text = lens.name;
+  const std::vector<double> values = lensCoefficients(camera);
+  for (std::size_t i = 0; i < values.size(); ++i)
+    text += std::string(i > 0 ? ", " : " ") + lens.coefficients[i] + " " + rounded(values[i], 4);
+  return text;
 }
 
 }  // namespace
@@ -73,16 +92,15 @@ std::vector<std::string> rigDoubts(const Rig& rig, double time_shift_s) {
 }
 
 std::string rigInWords(const Rig& rig, double time_shift_s) {
-  const PinholeRadtan& c = rig.camera;
+  const Camera& c = rig.camera;
   const Eigen::Matrix3d R_b_c = rig.T_b_c.q.toRotationMatrix();
-  const double across = (std::atan(c.cx / c.fx) + std::atan((c.width - c.cx) / c.fx)) * kDegrees;
-  const double down = (std::atan(c.cy / c.fy) + std::atan((c.height - c.cy) / c.fy)) * kDegrees;
+  const double across = (angleAt(c, {0, c.cy}) + angleAt(c, {c.width, c.cy})) * kDegrees;
+  const double down = (angleAt(c, {c.cx, 0}) + angleAt(c, {c.cx, c.height})) * kDegrees;
   std::ostringstream text;
   text << "camera: " << c.width << "x" << c.height << " px, focal lengths " << rounded(c.fx, 6) << " and "
        << rounded(c.fy, 6) << " px, centre " << rounded(c.cx, 6) << ", " << rounded(c.cy, 6) << "\n"
        << "  field of view " << rounded(across, 3) << " x " << rounded(down, 3)
-       << " deg without distortion; radial-tangential k1 " << rounded(c.k1, 4) << ", k2 " << rounded(c.k2, 4) << ", p1 "
-       << rounded(c.p1, 4) << ", p2 " << rounded(c.p2, 4) << "\n"
+       << (c.wide() ? " deg; " : " deg without distortion; ") << lensInWords(c) << "\n"
        << "  looks along " << axisInWords(R_b_c.col(2)) << "; right in the image is " << axisInWords(R_b_c.col(0))
        << ", down is " << axisInWords(R_b_c.col(1)) << "\n"
        << "  sits at x " << rounded(rig.T_b_c.p.x(), 4) << ", y " << rounded(rig.T_b_c.p.y(), 4) << ", z "

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "lintel/geometry/LensNames.h"
 #include "lintel/sensing/Recording.h"
 
 namespace lintel {
@@ -13,12 +14,14 @@ class CameraMaker {
  public:
   CameraMaker(const CameraDescription& description, const std::string& where) : d_(description), where_(where) {}
 
-  PinholeRadtan make() {
-    if (d_.projection != "pinhole" && d_.projection != "PINHOLE")
-      refuse(d_.projection_key, "'" + d_.projection + "' is not supported: use pinhole");
+  Camera make() {
     setSize();
-    setIntrinsics();
-    setDistortion();
+    if (d_.projection == "pinhole" || d_.projection == "PINHOLE") {
+      setIntrinsics(d_.intrinsics);
+      setDistortion();
+    } else {
+      setProjection();
+    }
     checkValues();
     return camera_;
   }
@@ -41,34 +44,50 @@ class CameraMaker {
     camera_.height = static_cast<int>(d_.height);
   }
 
-  void setIntrinsics() {
-    checkCount(d_.intrinsics, 4, d_.intrinsics_key);
-    camera_.fx = d_.intrinsics[0];
-    camera_.fy = d_.intrinsics[1];
-    camera_.cx = d_.intrinsics[2];
-    camera_.cy = d_.intrinsics[3];
+  void setIntrinsics(const std::vector<double>& values) {
+    checkCount(values, 4, d_.intrinsics_key);
+    camera_.fx = values[0];
+    camera_.fy = values[1];
+    camera_.cx = values[2];
+    camera_.cy = values[3];
+  }
+
+  /// A lens that is a projection of its own has its coefficients before fx fy cx cy, as Kalibr writes them.
+  void setProjection() {
+    const auto model = lensModel(d_.projection);
+    if (!model || *model < LensModel::kDoubleSphere)
+      refuse(d_.projection_key, "'" + d_.projection + "' is not supported: use pinhole, double-sphere or eucm");
+    checkCount(d_.intrinsics, 6, d_.intrinsics_key);
+    setLens(camera_, *model, {d_.intrinsics[0], d_.intrinsics[1]});
+    setIntrinsics({d_.intrinsics.begin() + 2, d_.intrinsics.end()});
   }
 
   void setDistortion() {
     if (d_.distortion == "none") return;
-    if (d_.distortion != "radial-tangential" && d_.distortion != "radtan" && d_.distortion != "plumb_bob")
-      refuse(d_.distortion_key,
-             "'" + d_.distortion + "' is not supported: use radial-tangential or none (undistorted images)");
+    auto model = lensModel(d_.distortion);
+    if (!model || *model >= LensModel::kDoubleSphere)
+      refuse(d_.distortion_key, "'" + d_.distortion +
+                                    "' is not supported: use radial-tangential, rational, equidistant or none "
+                                    "(undistorted images)");
     std::vector<double> k = d_.coefficients;
-    // OpenCV and ROS write k3 to k6 as zeros where the model has four coefficients
-    while (k.size() > 4 && k.back() == 0) k.pop_back();
-    if (k.size() > 4)
-      refuse(d_.coefficients_key, "has terms k3 to k6, which are not supported: calibrate with k1 k2 p1 p2 only");
-    checkCount(k, 4, d_.coefficients_key);
-    camera_.k1 = k[0];
-    camera_.k2 = k[1];
-    camera_.p1 = k[2];
-    camera_.p2 = k[3];
+    if (*model == LensModel::kRadialTangential) {
+      // OpenCV and ROS write more coefficients than the model has, as zeros or for the rational one
+      while (k.size() > 4 && k.back() == 0) k.pop_back();
+      if (k.size() > 5 && k.size() <= 8) {
+        model = LensModel::kRational;
+        k.resize(8);
+      }
+    }
+    if (!setLens(camera_, *model, k))
+      refuse(d_.coefficients_key,
+             "has " + std::to_string(k.size()) + " values, expected " + lensCoefficientCount(*model));
   }
 
   void checkValues() const {
-    const PinholeRadtan& c = camera_;
-    for (const double value : {c.fx, c.fy, c.cx, c.cy, c.k1, c.k2, c.p1, c.p2})
+    const Camera& c = camera_;
+    std::vector<double> values = lensCoefficients(c);
+    values.insert(values.end(), {c.fx, c.fy, c.cx, c.cy});
+    for (const double value : values)
       if (!std::isfinite(value))
         throw RecordingError(where_ + ": a camera parameter is not finite: calibrate the camera");
     if (c.fx <= 0 || c.fy <= 0)
@@ -77,12 +96,12 @@ class CameraMaker {
 
   const CameraDescription& d_;
   const std::string& where_;
-  PinholeRadtan camera_;
+  Camera camera_;
 };
 
 }  // namespace
 
-PinholeRadtan makeCamera(const CameraDescription& description, const std::string& where) {
+Camera makeCamera(const CameraDescription& description, const std::string& where) {
   return CameraMaker(description, where).make();
 }
 

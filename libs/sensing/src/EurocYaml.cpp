@@ -21,8 +21,8 @@ EurocCamera loadEurocCamera(const std::string& path) {
   const std::vector<double> size = file.list("resolution", 2);
   description.width = size[0];
   description.height = size[1];
-  description.intrinsics = file.list("intrinsics", 4);
-  description.distortion = file.get<std::string>("distortion_model");
+  description.intrinsics = file.numbers("intrinsics");
+  if (description.projection == "pinhole") description.distortion = file.get<std::string>("distortion_model");
   if (description.distortion != "none") description.coefficients = file.numbers("distortion_coefficients");
   EurocCamera camera;
   camera.model = makeCamera(description, path);

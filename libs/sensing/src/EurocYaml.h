@@ -9,7 +9,7 @@ namespace lintel {
 
 /// camN/sensor.yaml.
 struct EurocCamera {
-  PinholeRadtan model;
+  Camera model;
   Pose T_v_c;  ///< T_BS: camera in the vehicle's frame, canonical
   double rate_hz = 0;
 };

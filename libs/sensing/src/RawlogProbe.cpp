@@ -97,7 +97,7 @@ void checkBeginning(const Beginning& seen, const std::string& path, const Record
 }
 
 /// MRPT's names of models are those that CameraModel knows. It has the coefficients in OpenCV's order.
-PinholeRadtan cameraOf(const CObservationImage& observation, const std::string& where) {
+Camera cameraOf(const CObservationImage& observation, const std::string& where) {
   const mrpt::img::TCamera& params = observation.cameraParams;
   CameraDescription description;
   description.width = params.ncols;
@@ -105,6 +105,8 @@ PinholeRadtan cameraOf(const CObservationImage& observation, const std::string& 
   description.intrinsics = {params.fx(), params.fy(), params.cx(), params.cy()};
   description.distortion = mrpt::typemeta::TEnumType<mrpt::img::DistortionModel>::value2name(params.distortion);
   description.coefficients.assign(params.dist.begin(), params.dist.end());
+  if (params.distortion == mrpt::img::DistortionModel::kannala_brandt)
+    description.coefficients = {params.k1(), params.k2(), params.k3(), params.k4()};
   description.distortion_key = "distortion";
   description.coefficients_key = "dist";
   description.size_key = "ncols, nrows";

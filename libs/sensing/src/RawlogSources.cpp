@@ -12,6 +12,7 @@
 #include "ImageFile.h"
 #include "RawlogTime.h"
 #include "SensorStream.h"
+#include "lintel/geometry/LensNames.h"
 
 namespace lintel {
 namespace {
@@ -24,12 +25,21 @@ mrpt::poses::CPose3D toMrpt(const Pose& pose) {
   return {q, pose.p.x(), pose.p.y(), pose.p.z()};
 }
 
-mrpt::img::TCamera toMrpt(const PinholeRadtan& camera, const std::string& name) {
+mrpt::img::TCamera toMrpt(const Camera& camera, const std::string& name) {
   mrpt::img::TCamera params;
   params.ncols = static_cast<std::uint32_t>(camera.width);
   params.nrows = static_cast<std::uint32_t>(camera.height);
   params.setIntrinsicParamsFromValues(camera.fx, camera.fy, camera.cx, camera.cy);
-  params.setDistortionPlumbBob(camera.k1, camera.k2, camera.p1, camera.p2);
+  const auto& k = camera.lens;
+  if (camera.model >= LensModel::kDoubleSphere)
+    throw RecordingError(std::string("camera '") + name + "': a rawlog has no place for the lens model " +
+                         lensName(camera.model).name + ": give the folder itself, or calibrate with equidistant");
+  if (camera.model == LensModel::kEquidistant) {
+    params.setDistortionKannalaBrandt(k[0], k[1], k[2], k[3]);
+  } else {
+    params.distortion = mrpt::img::DistortionModel::plumb_bob;
+    params.dist = k;  // both in the order of OpenCV
+  }
   params.cameraName = name;
   return params;
 }

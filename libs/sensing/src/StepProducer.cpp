@@ -34,7 +34,7 @@ std::optional<FrameRef> StepProducer::nextInRange() {
 std::shared_ptr<const GrayImage> StepProducer::decode(const FrameRef& ref) {
   try {
     auto image = std::make_shared<const GrayImage>(ref.decode());
-    const PinholeRadtan& camera = stream_->rig().camera;
+    const Camera& camera = stream_->rig().camera;
     if (image->width == camera.width && image->height == camera.height) return image;
     throw ImageFault("image at " + secondsText(ref.t_ns) + " is " + std::to_string(image->width) + "x" +
                      std::to_string(image->height) + " pixels, its calibration " + std::to_string(camera.width) + "x" +

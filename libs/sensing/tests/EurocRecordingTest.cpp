@@ -39,8 +39,8 @@ TEST_F(EurocRecordingTest, ReadsTheCalibration) {
   const Rig rig = openRecording(root_)->rig();
   EXPECT_EQ(rig.camera.width, 32);
   EXPECT_EQ(rig.camera.fy, 30.296);
-  EXPECT_EQ(rig.camera.k2, 0.07395907);
-  EXPECT_EQ(rig.camera.p2, 1.76187114e-05);
+  EXPECT_EQ(rig.camera.lens[1], 0.07395907);
+  EXPECT_EQ(rig.camera.lens[3], 1.76187114e-05);
   EXPECT_EQ(rig.T_b_c.p.y(), -0.064676986768);
   EXPECT_NEAR(rig.T_b_c.R()(0, 1), -0.999880929698, 1e-10);
   EXPECT_NEAR(rig.T_b_c.R()(2, 0), -0.0257744366974, 1e-10);
@@ -48,6 +48,22 @@ TEST_F(EurocRecordingTest, ReadsTheCalibration) {
   EXPECT_EQ(rig.imu_noise.accel_noise, 2.3e-3);
   EXPECT_EQ(rig.imu_rate_hz, 200);
   EXPECT_EQ(rig.camera_rate_hz, 20);
+}
+
+TEST_F(EurocRecordingTest, ReadsAFisheye) {
+  replaceInFile(root_ + "/mav0/cam0/sensor.yaml", "radial-tangential", "equidistant");
+  const Camera camera = openRecording(root_)->rig().camera;
+  EXPECT_EQ(camera.model, LensModel::kEquidistant);
+  EXPECT_EQ(camera.lens[3], 1.76187114e-05);
+}
+
+TEST_F(EurocRecordingTest, ReadsALensThatIsACameraModel) {
+  replaceInFile(root_ + "/mav0/cam0/sensor.yaml", "camera_model: pinhole", "camera_model: ds");
+  replaceInFile(root_ + "/mav0/cam0/sensor.yaml", "intrinsics: [", "intrinsics: [-0.2, 0.6, ");
+  const Camera camera = openRecording(root_)->rig().camera;
+  EXPECT_EQ(camera.model, LensModel::kDoubleSphere);
+  EXPECT_EQ(camera.lens[1], 0.6);
+  EXPECT_EQ(camera.fx, 31.654);
 }
 
 TEST_F(EurocRecordingTest, AnImuThatIsNotTheBodyMovesTheCamera) {

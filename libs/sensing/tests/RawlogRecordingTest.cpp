@@ -178,9 +178,30 @@ TEST_F(RawlogRecordingTest, UnusableCalibrationsAreRefused) {
     return openingError(rawlog_);
   };
   EXPECT_THAT(errorAfter([](auto& image) { image.cameraParams = mrpt::img::TCamera(); }), HasSubstr("focal lengths"));
-  EXPECT_THAT(errorAfter([](auto& image) { image.cameraParams.k3(0.1); }), HasSubstr("k3 to k6"));
-  EXPECT_THAT(errorAfter([](auto& image) { image.cameraParams.setDistortionKannalaBrandt(0, 0, 0, 0); }),
-              HasSubstr("'kannala_brandt' is not supported"));
+}
+
+TEST_F(RawlogRecordingTest, LensesOfOtherModelsAreRead) {
+  const auto lensAfter = [this](const std::function<void(mrpt::img::TCamera&)>& change) {
+    convert();
+    edit(rawlog_, [&](auto& observations) {
+      for (const auto& observation : observations)
+        if (const auto image = as<CObservationImage>(observation)) change(image->cameraParams);
+    });
+    return openRecording(rawlog_)->rig().camera;
+  };
+  const Camera fisheye = lensAfter([](auto& camera) { camera.setDistortionKannalaBrandt(0.1, 0.2, 0.3, 0.4); });
+  EXPECT_EQ(fisheye.model, LensModel::kEquidistant);
+  EXPECT_EQ(fisheye.lens, (std::array<double, 8>{0.1, 0.2, 0.3, 0.4}));
+  const Camera sixth = lensAfter([](auto& camera) { camera.setDistortionPlumbBob(0.1, 0.2, 0.3, 0.4, 0.5); });
+  EXPECT_EQ(sixth.model, LensModel::kRadialTangential);
+  EXPECT_EQ(sixth.lens[4], 0.5);
+  EXPECT_EQ(lensAfter([](auto& camera) { camera.k5(0.1); }).model, LensModel::kRational);
+}
+
+TEST_F(RawlogRecordingTest, AFisheyeGoesIntoARawlogAndBack) {
+  replaceInFile(root_ + "/mav0/cam0/sensor.yaml", "radial-tangential", "equidistant");
+  convert();
+  expectSameRig(openRecording(rawlog_)->rig(), openRecording(root_)->rig());
 }
 
 TEST_F(RawlogRecordingTest, UndistortedCamerasAreAccepted) {
@@ -190,7 +211,7 @@ TEST_F(RawlogRecordingTest, UndistortedCamerasAreAccepted) {
       if (const auto image = as<CObservationImage>(observation))
         image->cameraParams.distortion = mrpt::img::DistortionModel::none;
   });
-  EXPECT_EQ(openRecording(rawlog_)->rig().camera.k1, 0);
+  EXPECT_EQ(openRecording(rawlog_)->rig().camera.lens[0], 0);
 }
 
 TEST_F(RawlogRecordingTest, ObservationsWithoutTimeAreSkipped) {

@@ -148,7 +148,7 @@ void expectSameSteps(const std::vector<FrameWithImu>& a, const std::vector<Frame
 
 void expectSameRig(const Rig& a, const Rig& b) {
   const auto numbers = [](const Rig& rig) {
-    const PinholeRadtan& c = rig.camera;
+    const Camera& c = rig.camera;
     const Pose& T = rig.T_b_c;
     const ImuNoise& n = rig.imu_noise;
     return std::vector<double>{double(c.width),
@@ -157,10 +157,15 @@ void expectSameRig(const Rig& a, const Rig& b) {
                                c.fy,
                                c.cx,
                                c.cy,
-                               c.k1,
-                               c.k2,
-                               c.p1,
-                               c.p2,
+                               double(c.model),
+                               c.lens[0],
+                               c.lens[1],
+                               c.lens[2],
+                               c.lens[3],
+                               c.lens[4],
+                               c.lens[5],
+                               c.lens[6],
+                               c.lens[7],
                                T.q.w(),
                                T.q.x(),
                                T.q.y(),

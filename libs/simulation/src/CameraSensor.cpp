@@ -19,7 +19,7 @@ float greyOf(float radiance) { return 255.0f * (1.0f - std::exp(-2.8f * radiance
 
 }  // namespace
 
-CameraSensor::CameraSensor(const ImageRenderer& renderer, const PinholeRadtan& camera, const Pose& T_b_c,
+CameraSensor::CameraSensor(const ImageRenderer& renderer, const Camera& camera, const Pose& T_b_c,
                            const CameraSensorParams& params)
     : renderer_(renderer), camera_(camera), T_b_c_(T_b_c), params_(params) {
   RandomStream random(params.seed, 0x6e6f697365);

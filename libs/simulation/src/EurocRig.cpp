@@ -15,4 +15,19 @@ Rig eurocRig() {
   return rig;
 }
 
+Camera lensCamera(LensModel model) {
+  switch (model) {
+    case LensModel::kRational:
+      return {752, 480, 458.654, 457.296, 367.215, 248.375, {-0.2, 0.04, 2e-4, 2e-5, 0, 0.08, 0.02, 0}, model};
+    case LensModel::kEquidistant:  // the coefficients of TUM-VI's cam0, 166 x 107 degrees
+      return {752, 480, 259.7, 259.4, 372.3, 243.1, {0.0034824, 0.000715, -0.0020532, 0.00020294}, model};
+    case LensModel::kDoubleSphere:  // much the same lens
+      return {752, 480, 214.1, 213.9, 372.3, 243.1, {-0.1755, 0.5929}, model};
+    case LensModel::kExtendedUnified:
+      return {752, 480, 259.7, 259.4, 372.3, 243.1, {0.63, 1.04}, model};
+    default:
+      return eurocRig().camera;
+  }
+}
+
 }  // namespace lintel

@@ -4,6 +4,8 @@
 #include <iomanip>
 #include <sstream>
 
+#include "lintel/geometry/LensNames.h"
+
 namespace lintel {
 
 namespace {
@@ -29,15 +31,30 @@ std::string extrinsics(const Pose& T_b_s) {
 
 }  // namespace
 
+/// Model and intrinsics: two more of a lens that is a camera model by itself.
+std::string lensText(const Camera& c) {
+  auto out = text();
+  const std::string name = lensName(c.model).name;
+  const bool own = c.model >= LensModel::kDoubleSphere;
+  std::string lens;
+  for (const double value : lensCoefficients(c)) {
+    auto number = text();
+    number << value;
+    lens += (lens.empty() ? "" : ", ") + number.str();
+  }
+  out << "camera_model: " << (own ? name : "pinhole") << "\nintrinsics: [" << (own ? lens + ", " : "") << c.fx << ", "
+      << c.fy << ", " << c.cx << ", " << c.cy << "] #" << (own ? "lens, " : "") << "fu, fv, cu, cv\n";
+  if (!own) out << "distortion_model: " << name << "\ndistortion_coefficients: [" << lens << "]\n";
+  return out.str();
+}
+
 std::string cameraYaml(const Rig& rig) {
   auto out = text();
-  const PinholeRadtan& c = rig.camera;
+  const Camera& c = rig.camera;
   out << "# General sensor definitions.\nsensor_type: camera\ncomment: simulated cam0 (lintel-sim)\n\n"
       << extrinsics(rig.T_b_c) << "\n# Camera specific definitions.\nrate_hz: " << rig.camera_rate_hz
-      << "\nresolution: [" << c.width << ", " << c.height << "]\ncamera_model: pinhole\nintrinsics: [" << c.fx << ", "
-      << c.fy << ", " << c.cx << ", " << c.cy
-      << "] #fu, fv, cu, cv\ndistortion_model: radial-tangential\ndistortion_coefficients: [" << c.k1 << ", " << c.k2
-      << ", " << c.p1 << ", " << c.p2 << "]\n";
+      << "\nresolution: [" << c.width << ", " << c.height << "]\n"
+      << lensText(c);
   return out.str();
 }
 

@@ -30,7 +30,7 @@ struct ShadedPatch {
 
 class ImageRenderer::Impl {
  public:
-  Impl(const Scene& scene, const PinholeRadtan& camera) : scene_(scene), rays_(scene_), pixels_(camera), view_(camera) {
+  Impl(const Scene& scene, const Camera& camera) : scene_(scene), rays_(scene_), pixels_(camera), view_(camera) {
     for (const Material& m : scene_.materials) textures_.emplace_back(paintTexture(m), m.resolution_px, m.tile_m);
     for (const Patch& p : scene_.patches) {
       const Material& m = scene_.materials.at(static_cast<std::size_t>(p.material));
@@ -153,8 +153,7 @@ class ImageRenderer::Impl {
   std::vector<ShadedPatch> patches_;
 };
 
-ImageRenderer::ImageRenderer(const Scene& scene, const PinholeRadtan& camera)
-    : impl_(std::make_unique<Impl>(scene, camera)) {}
+ImageRenderer::ImageRenderer(const Scene& scene, const Camera& camera) : impl_(std::make_unique<Impl>(scene, camera)) {}
 ImageRenderer::~ImageRenderer() = default;
 Radiance ImageRenderer::render(const Pose& T_w_c, const EdgeSampling& edges) const {
   return impl_->render(T_w_c, edges);

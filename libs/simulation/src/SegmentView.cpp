@@ -2,6 +2,7 @@
 #include "lintel/simulation/SegmentView.h"
 
 #include <algorithm>
+#include <cmath>
 
 namespace lintel {
 
@@ -23,21 +24,16 @@ double border(const ViewTest& view, const Segment3& segment_c, double seen, doub
 
 }  // namespace
 
-ViewTest::ViewTest(const PinholeRadtan& camera, double border_px, double min_depth_m)
-    : camera_(camera), border_px_(border_px), min_depth_m_(min_depth_m), max_radius_(0) {
-  for (const double x : {0.0, camera.width - 1.0}) {
-    for (const double y : {0.0, camera.height - 1.0}) {
-      max_radius_ = std::max(max_radius_, camera.normalise({x, y}).norm());
-    }
-  }
-  max_radius_ *= 1.05;
+ViewTest::ViewTest(const Camera& camera, double border_px, double min_depth_m)
+    : camera_(camera), border_px_(border_px), min_depth_m_(min_depth_m) {
+  const double angle = largestAngle(camera);
+  least_cosine_ = std::cos(camera.wide() ? std::min(1.05 * angle, 3.14) : std::atan(1.05 * std::tan(angle)));
 }
 
 std::optional<Eigen::Vector2d> ViewTest::project(const Eigen::Vector3d& p_c) const {
-  if (p_c.z() < min_depth_m_) return {};
-  const Eigen::Vector2d normalised = p_c.head<2>() / p_c.z();
-  if (normalised.norm() > max_radius_) return {};
-  const Eigen::Vector2d px = camera_.toPixel(normalised);
+  const double distance_m = p_c.norm();
+  if ((camera_.wide() ? distance_m : p_c.z()) < min_depth_m_ || p_c.z() < least_cosine_ * distance_m) return {};
+  const Eigen::Vector2d px = camera_.project(p_c);
   if (!camera_.contains(px, border_px_)) return {};
   return px;
 }

@@ -8,6 +8,7 @@
 
 #include "FrameLoop.h"
 #include "Motion.h"
+#include "lintel/geometry/LensNames.h"
 #include "lintel/geometry/Rotation.h"
 #include "lintel/simulation/EurocRig.h"
 #include "lintel/simulation/EurocWriter.h"
@@ -26,6 +27,18 @@ bool inGap(double t_s, double every_s, double gap_s) {
   return every_s > 0 && t_s >= every_s && std::fmod(t_s, every_s) < gap_s;
 }
 
+Rig rigOf(const SimulationParams& params) {
+  Rig rig = eurocRig();
+  if (params.lens == "none") {
+    rig.camera.lens = {};
+  } else if (const auto model = lensModel(params.lens)) {
+    rig.camera = lensCamera(*model);
+  } else {
+    throw std::invalid_argument("the lens " + params.lens + " is not known");
+  }
+  return rig;
+}
+
 /// What a calibration gets wrong: some tenths of a percent, a pixel, a tenth of a degree, some millimetres.
 Rig miscalibrated(Rig rig, double amount, std::uint64_t seed) {
   RandomStream random(seed, 0x63616c6962);
@@ -33,8 +46,8 @@ Rig miscalibrated(Rig rig, double amount, std::uint64_t seed) {
   rig.camera.fy *= 1 + amount * random.uniform(-0.002, 0.002);
   rig.camera.cx += amount * random.uniform(-0.8, 0.8);
   rig.camera.cy += amount * random.uniform(-0.8, 0.8);
-  rig.camera.k1 *= 1 + amount * random.uniform(-0.01, 0.01);
-  rig.camera.k2 *= 1 + amount * random.uniform(-0.01, 0.01);
+  rig.camera.lens[0] *= 1 + amount * random.uniform(-0.01, 0.01);
+  rig.camera.lens[1] *= 1 + amount * random.uniform(-0.01, 0.01);
   rig.T_b_c.q = rig.T_b_c.q * expRotation(amount * 0.0025 * random.direction());
   rig.T_b_c.p += amount * 0.003 * random.direction();
   return rig;
@@ -46,7 +59,7 @@ class Simulation::Impl {
  public:
   explicit Impl(const SimulationParams& params)
       : params_(params),
-        rig_(eurocRig()),
+        rig_(rigOf(params)),
         kind_(sceneKind(params.scene)),
         motion_(buildMotion(params.motion, kind_, rig_)),
         duration_s_(durationOf(params, *motion_)),

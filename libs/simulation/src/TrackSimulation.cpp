@@ -79,7 +79,7 @@ class Projector {
       const double share = noise_.uniform();
       const Eigen::Vector2d wrong(noise_.uniform(-30, 30), noise_.uniform(-30, 30));
       if (share < params_.outlier_share) o.px += wrong;
-      o.normalised = view_.camera().normalise(o.px);
+      o.ray = view_.camera().ray(o.px);
       frame.points.push_back(o);
     }
   }
@@ -100,8 +100,8 @@ class Projector {
       o.start_px = views[entry.landmark].start_px;
       o.end_px = views[entry.landmark].end_px;
       disturb(o);
-      o.start = view_.camera().normalise(o.start_px);
-      o.end = view_.camera().normalise(o.end_px);
+      o.start = view_.camera().ray(o.start_px);
+      o.end = view_.camera().ray(o.end_px);
       if (params_.line_noise_px > 0) o.sigma_px = params_.line_noise_px;
       frame.lines.push_back(o);
     }

@@ -28,7 +28,7 @@ Scene squareBeforeWall() {
 
 // Where the grey changes, found by the share of light and dark along a row, against the camera model's projection.
 TEST(ImageRenderer, EdgesAreWhereTheCameraModelSays) {
-  const PinholeRadtan camera = eurocRig().camera;
+  const Camera camera = eurocRig().camera;
   const Radiance image = ImageRenderer(squareBeforeWall(), camera).render(Pose{});
   for (const double y : {-0.3, 0.0, 0.3}) {
     for (const double side : {-0.5, 0.5}) {

@@ -55,7 +55,7 @@ TEST_F(SimulationTest, TheFolderReadsBackAsARecording) {
   const auto recording = openRecording(write("recording", quick()));
   const Rig expected = eurocRig(), rig = recording->rig();
   EXPECT_DOUBLE_EQ(rig.camera.fx, expected.camera.fx);
-  EXPECT_DOUBLE_EQ(rig.camera.k2, expected.camera.k2);
+  EXPECT_DOUBLE_EQ(rig.camera.lens[1], expected.camera.lens[1]);
   EXPECT_LT((rig.T_b_c.p - expected.T_b_c.p).norm(), 1e-12);
   EXPECT_LT(rig.T_b_c.q.angularDistance(expected.T_b_c.q), 1e-7);
   EXPECT_DOUBLE_EQ(rig.imu_noise.accel_walk, expected.imu_noise.accel_walk);

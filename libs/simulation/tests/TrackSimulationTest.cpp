@@ -25,14 +25,14 @@ TEST(TrackSimulation, ObservationsAreTheLandmarksProjections) {
     ASSERT_GT(f.tracks.lines.size(), 10u);
     for (const PointObservation& o : f.tracks.points) {
       const Eigen::Vector3d p_c = T_c_w * sim.points_w[sim.point_of_track[o.id]];
-      ASSERT_NEAR((p_c.head<2>() / p_c.z() - o.normalised).norm(), 0, 1e-9);
+      ASSERT_NEAR((rig.camera.rayTo(p_c) - o.ray).norm(), 0, 1e-9);
       ASSERT_TRUE(rig.camera.contains(o.px, 4));
     }
     for (const LineObservation& o : f.tracks.lines) {
       const Segment3& s = sim.lines_w[sim.line_of_track[o.id]];
       const Eigen::Vector3d normal = (T_c_w * s.start).cross(T_c_w * s.end).normalized();  // plane through the camera
-      ASSERT_NEAR(normal.dot(o.start.homogeneous()), 0, 1e-9);
-      ASSERT_NEAR(normal.dot(o.end.homogeneous()), 0, 1e-9);
+      ASSERT_NEAR(normal.dot(o.start), 0, 1e-9);
+      ASSERT_NEAR(normal.dot(o.end), 0, 1e-9);
       ASSERT_GE((o.end_px - o.start_px).norm(), 50);
     }
   }

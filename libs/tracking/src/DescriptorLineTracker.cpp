@@ -14,7 +14,7 @@ constexpr double kMinOverlap = 0.3;        ///< of the shorter one
 constexpr double kDetectorSigma_px = 1.0;  ///< of a detection at half resolution
 
 cv::line_descriptor::KeyLine keyLine(const LineCamera& camera, const ImageLine& line, const cv::Size& size, int index) {
-  const Eigen::Vector2d a = camera.toImage(line.start), b = camera.toImage(line.end);
+  const Eigen::Vector2d a = camera.toImage(line.start, line.axis), b = camera.toImage(line.end, line.axis);
   cv::line_descriptor::KeyLine key;
   key.startPointX = key.sPointInOctaveX = static_cast<float>(a.x());
   key.startPointY = key.sPointInOctaveY = static_cast<float>(a.y());
@@ -65,7 +65,7 @@ std::vector<std::optional<std::size_t>> LineMatcher::match(const std::vector<Ima
   std::vector<Match> pairs;
   for (std::size_t f = 0; f < expected.size(); ++f)
     for (std::size_t t = 0; t < to.size(); ++t) {
-      const LineRelation relation = relate(expected[f], to[t]);
+      const LineRelation relation = relate(expected[f], camera_.seenFrom(expected[f].axis, to[t]));
       if (relation.angle_rad > kGateAngle_rad || relation.distance_px > camera_.scaled(kGateDistance_px) ||
           relation.overlap_px < kMinOverlap * std::min(expected[f].length(), to[t].length()))
         continue;

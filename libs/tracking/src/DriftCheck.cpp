@@ -25,7 +25,7 @@ std::vector<TrackId> DriftCheck::drifting() const {
   for (const PointObservation& now : entries_.back().points) {
     while (then != then_end && then->id < now.id) ++then;
     if (then == then_end || then->id != now.id) continue;
-    pairs.push_back({then->normalised, now.normalised});
+    pairs.push_back({then->ray, now.ray});
     paired.push_back(now.id);
   }
   const Eigen::Matrix3d information = Eigen::Matrix3d::Identity() / (kRotationSigma_rad * kRotationSigma_rad);

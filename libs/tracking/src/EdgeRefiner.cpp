@@ -89,13 +89,13 @@ class Profiler {
   /// image.
   bool look(double s, double centre_px, int reach, Sample& sample) {
     const Eigen::Vector2d u = line_.start + s * d_ + centre_px * n_;
-    if (!camera_.mayBeSeen(u)) return false;
+    if (!camera_.mayBeSeen(u, line_.axis)) return false;
     if (std::abs(s - step_at_) > step_valid_px_) {
-      step_ = camera_.imageJacobian(u) * n_;
+      step_ = camera_.imageJacobian(u, line_.axis) * n_;
       step_at_ = s;
       stride_ = step_.norm();
     }
-    const Eigen::Vector2d px = camera_.toImage(u);
+    const Eigen::Vector2d px = camera_.toImage(u, line_.axis);
     if (!camera_.camera().contains(px, scale_ * ((reach + 1) * std::max(stride_, 1.0) + 2))) return false;
     GradientProfile profile;
     gradientsAcross(image_, px / scale_, step_, stride_, reach, profile);  // of the level: there a step is scale px
@@ -265,7 +265,7 @@ std::optional<RefinedLine> EdgeRefiner::refineAtLevel(const ImagePyramid& pyrami
   if (first == 0) from = grow(profiler, fit, from, -step_px, grow_px, usual, tolerance_px);
   if (last == end) to = grow(profiler, fit, to, step_px, grow_px, usual, tolerance_px);
   const Eigen::Vector2d d = line.direction(), n = line.normal();
-  refined.line = {line.start + from * d + fit.at(from) * n, line.start + to * d + fit.at(to) * n};
+  refined.line = {line.start + from * d + fit.at(from) * n, line.start + to * d + fit.at(to) * n, line.axis};
   // The ends of a fitted line vary twice as much as its middle.
   refined.sigma_px = std::hypot(kFloor_px * scale, 2 * rms / std::sqrt(static_cast<double>(seen)));
   return refined;
@@ -276,8 +276,9 @@ std::optional<ImageLine> EdgeRefiner::orient(const cv::Mat& image, const ImageLi
   const Eigen::Vector2d n = line.normal();
   for (int i = 1; i <= 5; ++i) {
     const Eigen::Vector2d u = line.at(0.2 * i - 0.1);
-    if (!camera_.sees(u, 4)) continue;
-    const Eigen::Vector2d px = camera_.toImage(u), step = (camera_.imageJacobian(u) * n).normalized();
+    if (!camera_.sees(u, 4, line.axis)) continue;
+    const Eigen::Vector2d px = camera_.toImage(u, line.axis),
+                          step = (camera_.imageJacobian(u, line.axis) * n).normalized();
     float strongest = 0;
     GradientProfile profile;
     gradientsAcross(image, px, step, 1, 1, profile);
@@ -287,7 +288,7 @@ std::optional<ImageLine> EdgeRefiner::orient(const cv::Mat& image, const ImageLi
     strength += std::abs(strongest);
   }
   if (std::abs(balance) < 0.3 * strength || strength == 0) return std::nullopt;
-  return balance > 0 ? line : ImageLine{line.end, line.start};
+  return balance > 0 ? line : ImageLine{line.end, line.start, line.axis};
 }
 
 }  // namespace lintel

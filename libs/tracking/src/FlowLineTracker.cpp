@@ -27,7 +27,7 @@ FlowLineTracker::FlowLineTracker(const Rig& rig, const LineTrackerParams& params
       camera_(rig.camera),
       detector_(camera_, params),
       flow_(camera_, params),
-      merger_(params, camera_.scaled(1)),
+      merger_(camera_, params),
       refiner_(camera_) {}
 
 void FlowLineTracker::process(const ImagePyramid& pyramid, const GyroPrediction& gyro, const PointMotion& points,
@@ -119,7 +119,9 @@ bool FlowLineTracker::moveTo(const ImagePyramid& pyramid, const ImageLine& line,
     track.drift *= kFade;
     if (sure) track.drift += deviation * (kEndNoise_px / noise_px);
     if (track.drift.cwiseAbs().maxCoeff() > kMaxDrift_px) return false;
-    track.depth = observe(*track.carried, track.turned, line, step.t_c1(), camera_.focal(), noise_px);
+    const Eigen::Vector3d t = camera_.camera().wide() ? LineCamera::R_c_a(line.axis).transpose() * step.t_c1()
+                                                      : step.t_c1();  // axes of the line's own camera
+    track.depth = observe(*track.carried, track.turned, line, t, camera_.focal(), noise_px);
   } else {
     track.depth.reset();
     track.drift.setZero();

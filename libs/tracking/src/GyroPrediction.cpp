@@ -36,10 +36,10 @@ bool GyroPrediction::predict(const ImuBatch& imu, double dt_s) {
   return from_gyro_;
 }
 
-cv::Point2f GyroPrediction::turnedPixel(const PinholeRadtan& camera, const Eigen::Vector2d& x0) const {
-  const Eigen::Vector3d f1 = R_c1_c0_ * x0.homogeneous();
-  if (f1.z() < 0.1) return {-1e4f, -1e4f};
-  const Eigen::Vector2d px = camera.toPixel(f1.head<2>() / f1.z());
+cv::Point2f GyroPrediction::turnedPixel(const Camera& camera, const Eigen::Vector3d& ray) const {
+  const Eigen::Vector3d f1 = R_c1_c0_ * ray;
+  if (camera.wide() ? !camera.projects(f1) : f1.z() < 0.1) return {-1e4f, -1e4f};
+  const Eigen::Vector2d px = camera.project(f1);
   return {static_cast<float>(px.x()), static_cast<float>(px.y())};
 }
 

@@ -23,9 +23,9 @@ class GyroPrediction {
   /// The predicted (after `correct`: corrected) rotation of the step.
   const Eigen::Quaterniond& R_c1_c0() const { return R_c1_c0_; }
 
-  /// Where the normalised point `x0` of frame 0 is seen in frame 1 when the camera only turned [px]; far outside the
-  /// image when it is behind the camera.
-  cv::Point2f turnedPixel(const PinholeRadtan& camera, const Eigen::Vector2d& x0) const;
+  /// Where what frame 0 shows at `ray` is seen in frame 1 when the camera only turned [px]; far outside the image when
+  /// the lens cannot see it.
+  cv::Point2f turnedPixel(const Camera& camera, const Eigen::Vector3d& ray) const;
 
   /// How far the prediction may be off: information of its error rotation vector, camera frame c1 [1/rad^2].
   Eigen::Matrix3d information() const;

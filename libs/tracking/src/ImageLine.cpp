@@ -22,19 +22,83 @@ void totalLeastSquares(const std::vector<Eigen::Vector2d>& points, RobustLine& f
   std::size_t first = 0, last = points.size() - 1;
   while (!fit.inlier[first]) ++first;
   while (!fit.inlier[last]) --last;
-  fit.line = {mean + d * d.dot(points[first] - mean), mean + d * d.dot(points[last] - mean)};
+  fit.line.start = mean + d * d.dot(points[first] - mean);
+  fit.line.end = mean + d * d.dot(points[last] - mean);
 }
+
+constexpr double kLeastDepth = 0.1;   ///< of a ray along an axis: farther to the side the plane is stretched too much
+constexpr double kMostStretch = 1.4;  ///< tangent of the angle between a line's axis and its ends: 54 degrees
+constexpr double kRoom = 1.02;
 
 }  // namespace
 
-LineCamera::LineCamera(const PinholeRadtan& camera)
+LineCamera::LineCamera(const Camera& camera)
     : camera_(camera), focal_(camera.meanFocal()), pixel_scale_(pixelScale(camera)) {
+  if (camera.wide()) {
+    least_cosine_ = std::cos(std::min(kRoom * largestAngle(camera), 3.14));
+    return;
+  }
   for (const double x : {0.0, camera.width - 1.0})
     for (const double y : {0.0, camera.height - 1.0})
-      max_radius_ = std::max(max_radius_, 1.02 * fromImage({x, y}).norm());
+      max_radius_ = std::max(max_radius_, kRoom * fromImage({x, y}).norm());
 }
 
-Eigen::Matrix2d LineCamera::imageJacobian(const Eigen::Vector2d& u) const {
+Eigen::Matrix3d LineCamera::R_c_a(const Eigen::Vector3d& a) {
+  // the least rotation from the optical axis: x and y stay x and y where possible
+  const double c = 1 / (1 + std::max(a.z(), -0.999));
+  Eigen::Matrix3d R;
+  R << 1 - a.x() * a.x() * c, -a.x() * a.y() * c, a.x(), -a.x() * a.y() * c, 1 - a.y() * a.y() * c, a.y(), -a.x(),
+      -a.y(), a.z();
+  return R;
+}
+
+Eigen::Vector3d LineCamera::rayOf(const Eigen::Vector2d& u, const Eigen::Vector3d& axis) const {
+  const Eigen::Vector3d ray = (u / focal_).homogeneous();
+  return camera_.wide() ? Eigen::Vector3d((R_c_a(axis) * ray).normalized()) : ray;
+}
+
+Eigen::Vector2d LineCamera::ofRay(const Eigen::Vector3d& ray, const Eigen::Vector3d& axis) const {
+  const Eigen::Vector3d seen = R_c_a(axis).transpose() * ray;
+  return focal_ * seen.head<2>() / std::max(seen.z(), kLeastDepth);
+}
+
+ImageLine LineCamera::between(const Eigen::Vector3d& start_ray, const Eigen::Vector3d& end_ray) const {
+  const Eigen::Vector3d axis = (start_ray + end_ray).normalized();
+  return {ofRay(start_ray, axis), ofRay(end_ray, axis), axis};
+}
+
+ImageLine LineCamera::lineFromImage(const Eigen::Vector2d& start_px, const Eigen::Vector2d& end_px) const {
+  if (camera_.wide()) return between(camera_.ray(start_px), camera_.ray(end_px));
+  return {fromImage(start_px), fromImage(end_px)};
+}
+
+ImageLine LineCamera::seenFrom(const Eigen::Vector3d& axis, const ImageLine& line) const {
+  if (!camera_.wide() || axis == line.axis) return line;
+  return {ofRay(rayOf(line.start, line.axis), axis), ofRay(rayOf(line.end, line.axis), axis), axis};
+}
+
+ImageLine LineCamera::centred(const ImageLine& line) const {
+  return camera_.wide() ? between(rayOf(line.start, line.axis), rayOf(line.end, line.axis)) : line;
+}
+
+bool LineCamera::mayBeNear(const ImageLine& line, const ImageLine& other, double distance_px) const {
+  if (!camera_.wide()) return true;
+  // the axis of the other one, which is on it, from the great circle of this one
+  const Eigen::Vector3d normal = rayOf(line.start, line.axis).cross(rayOf(line.end, line.axis));
+  return std::abs(normal.dot(other.axis)) * focal_ <= (distance_px + 0.1 * other.length()) * normal.norm();
+}
+
+bool LineCamera::mayBeSeenWide(const Eigen::Vector2d& u, const Eigen::Vector3d& axis) const {
+  return u.squaredNorm() <= kMostStretch * kMostStretch * focal_ * focal_ && rayOf(u, axis).z() >= least_cosine_;
+}
+
+Eigen::Matrix2d LineCamera::imageJacobian(const Eigen::Vector2d& u, const Eigen::Vector3d& axis) const {
+  if (camera_.wide()) {
+    PixelJacobians d;
+    const Eigen::Matrix3d R = R_c_a(axis);
+    camera_.project(R * (u / focal_).homogeneous(), 1, d);
+    return d.point * R.leftCols<2>() / focal_;
+  }
   Eigen::Matrix2d J = camera_.distortJacobian(u / focal_) / focal_;
   J.row(0) *= camera_.fx;
   J.row(1) *= camera_.fy;
@@ -42,6 +106,7 @@ Eigen::Matrix2d LineCamera::imageJacobian(const Eigen::Vector2d& u) const {
 }
 
 ImageLine LineCamera::turned(const ImageLine& line, const Eigen::Quaterniond& R_c1_c0) const {
+  if (camera_.wide()) return between(R_c1_c0 * rayOf(line.start, line.axis), R_c1_c0 * rayOf(line.end, line.axis));
   // Ends may lie outside the image, where the lens model folds back: they stay in undistorted pixels.
   const auto turn = [&](const Eigen::Vector2d& u) -> Eigen::Vector2d {
     const Eigen::Vector3d ray = R_c1_c0 * (u / focal_).homogeneous();
@@ -50,13 +115,13 @@ ImageLine LineCamera::turned(const ImageLine& line, const Eigen::Quaterniond& R_
   return {turn(line.start), turn(line.end)};
 }
 
-bool LineCamera::sees(const Eigen::Vector2d& u, double border_px) const {
-  return mayBeSeen(u) && camera_.contains(toImage(u), border_px);
+bool LineCamera::sees(const Eigen::Vector2d& u, double border_px, const Eigen::Vector3d& axis) const {
+  return mayBeSeen(u, axis) && camera_.contains(toImage(u, axis), border_px);
 }
 
 std::optional<ImageLine> LineCamera::clip(const ImageLine& line, double border_px) const {
   constexpr int kSteps = 16;  // the part in the image is looked for in such pieces; a lens bends it little
-  const auto seen = [&](double share) { return sees(line.at(share), border_px); };
+  const auto seen = [&](double share) { return sees(line.at(share), border_px, line.axis); };
   int first = 0, last = kSteps;
   while (first <= kSteps && !seen(static_cast<double>(first) / kSteps)) ++first;
   if (first > kSteps) return std::nullopt;
@@ -73,7 +138,7 @@ std::optional<ImageLine> LineCamera::clip(const ImageLine& line, double border_p
       first == 0 ? 0.0 : bisect(static_cast<double>(first) / kSteps, static_cast<double>(first - 1) / kSteps);
   const double s1 =
       last == kSteps ? 1.0 : bisect(static_cast<double>(last) / kSteps, static_cast<double>(last + 1) / kSteps);
-  return ImageLine{line.at(s0), line.at(s1)};
+  return ImageLine{line.at(s0), line.at(s1), line.axis};
 }
 
 LineRelation relate(const ImageLine& line, const ImageLine& other) {

@@ -6,14 +6,18 @@
 #include <optional>
 #include <vector>
 
-#include "lintel/geometry/PinholeRadtan.h"
+#include "lintel/geometry/Camera.h"
 
 namespace lintel {
 
-/// A segment in undistorted pixels: normalised coordinates times the mean focal length, origin at the optical axis.
-/// Straight edges are straight here, and distances are pixels.
+/// A segment in undistorted pixels: of the image of a pinhole camera with the mean focal length in the same place,
+/// origin at its optical axis. Straight edges are straight here, and distances are pixels. That camera looks where the
+/// real one does, or, where the lens is wide, at the line: its plane is tangent to the sphere of rays near the line's
+/// middle, so that a pixel is nearly a pixel of the real image wherever the line is. Lines with different axes are
+/// compared after LineCamera::seenFrom().
 struct ImageLine {
   Eigen::Vector2d start = Eigen::Vector2d::Zero(), end = Eigen::Vector2d::Zero();
+  Eigen::Vector3d axis = Eigen::Vector3d::UnitZ();  ///< where that camera looks, in the real one's frame
 
   double length() const { return (end - start).norm(); }
   Eigen::Vector2d direction() const { return (end - start).normalized(); }
@@ -28,32 +32,57 @@ struct ImageLine {
 /// Conversions between undistorted pixels and the image.
 class LineCamera {
  public:
-  explicit LineCamera(const PinholeRadtan& camera);
+  explicit LineCamera(const Camera& camera);
 
   double focal() const { return focal_; }
   /// A length that stands for an angle, given in pixels at the reference focal length (core/ParamRange.h), in pixels of
   /// this camera.
   double scaled(double reference_px) const { return pixel_scale_ * reference_px; }
-  const PinholeRadtan& camera() const { return camera_; }
+  const Camera& camera() const { return camera_; }
 
-  Eigen::Vector2d fromImage(const Eigen::Vector2d& px) const { return focal_ * camera_.normalise(px); }
-  Eigen::Vector2d toImage(const Eigen::Vector2d& u) const { return camera_.toPixel(u / focal_); }
+  // `axis`: of the line to which the undistorted pixel belongs.
+
+  Eigen::Vector2d fromImage(const Eigen::Vector2d& px, const Eigen::Vector3d& axis = Eigen::Vector3d::UnitZ()) const {
+    return camera_.wide() ? ofRay(camera_.ray(px), axis) : focal_ * camera_.normalise(px);
+  }
+  Eigen::Vector2d toImage(const Eigen::Vector2d& u, const Eigen::Vector3d& axis = Eigen::Vector3d::UnitZ()) const {
+    return camera_.wide() ? camera_.project(rayOf(u, axis)) : camera_.toPixel(u / focal_);
+  }
+  /// The ray (Camera.h) of an undistorted pixel.
+  Eigen::Vector3d rayOf(const Eigen::Vector2d& u, const Eigen::Vector3d& axis) const;
+  /// The line between two pixels of the image, with the axis of its middle.
+  ImageLine lineFromImage(const Eigen::Vector2d& start_px, const Eigen::Vector2d& end_px) const;
   /// d image pixel / d undistorted pixel.
-  Eigen::Matrix2d imageJacobian(const Eigen::Vector2d& u) const;
-  /// Not so far out that the lens model folds back into the image.
-  bool mayBeSeen(const Eigen::Vector2d& u) const { return u.squaredNorm() <= max_radius_ * max_radius_; }
+  Eigen::Matrix2d imageJacobian(const Eigen::Vector2d& u, const Eigen::Vector3d& axis = Eigen::Vector3d::UnitZ()) const;
+  /// Not so far out that the lens model folds back into the image, or that the plane is stretched.
+  bool mayBeSeen(const Eigen::Vector2d& u, const Eigen::Vector3d& axis = Eigen::Vector3d::UnitZ()) const {
+    return camera_.wide() ? mayBeSeenWide(u, axis) : u.squaredNorm() <= max_radius_ * max_radius_;
+  }
   /// Seen in the image, at least `border_px` from its edge.
-  bool sees(const Eigen::Vector2d& u, double border_px) const;
+  bool sees(const Eigen::Vector2d& u, double border_px, const Eigen::Vector3d& axis = Eigen::Vector3d::UnitZ()) const;
   /// The part of `line` that the image sees; empty when there is none.
   std::optional<ImageLine> clip(const ImageLine& line, double border_px) const;
-  /// Where `line` of the camera c0 would be seen in c1 had the camera only turned.
+  /// Where `line` of the camera c0 would be seen in c1 had the camera only turned; with the axis of its middle there.
   ImageLine turned(const ImageLine& line, const Eigen::Quaterniond& R_c1_c0) const;
+  /// The same line with another axis.
+  ImageLine seenFrom(const Eigen::Vector3d& axis, const ImageLine& line) const;
+  /// The same line with the axis of its middle.
+  ImageLine centred(const ImageLine& line) const;
+  /// Whether lines with different axes may be nearer than `distance_px` to each other; quick.
+  bool mayBeNear(const ImageLine& line, const ImageLine& other, double distance_px) const;
+  /// Rotation from the frame of a line's own camera to the real one's.
+  static Eigen::Matrix3d R_c_a(const Eigen::Vector3d& axis);
 
  private:
-  PinholeRadtan camera_;
+  bool mayBeSeenWide(const Eigen::Vector2d& u, const Eigen::Vector3d& axis) const;
+  Eigen::Vector2d ofRay(const Eigen::Vector3d& ray, const Eigen::Vector3d& axis) const;
+  ImageLine between(const Eigen::Vector3d& start_ray, const Eigen::Vector3d& end_ray) const;
+
+  Camera camera_;
   double focal_;
   double pixel_scale_;
-  double max_radius_ = 0;  ///< of undistorted pixels in the image, with a little room
+  double max_radius_ = 0;    ///< of undistorted pixels in the image, with a little room
+  double least_cosine_ = 0;  ///< of the angle to the optical axis, of what a wide image shows
 };
 
 /// How two segments lie to each other.

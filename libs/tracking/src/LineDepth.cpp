@@ -31,7 +31,7 @@ CarriedDepth carry(const LineDepth& depth, const ImageLine& line, const ImageLin
   const auto end = [&](const InverseDepth& from, const Eigen::Vector2d& u0, const Eigen::Vector2d& u1, InverseDepth& to,
                        double& sigma_px) -> Eigen::Vector2d {
     const double z = std::max((R_c1_c0 * (u0 / focal_px).homogeneous()).z(), 0.1);
-    to = {carriedInverseDepth(from.w / z, t_c1), from.variance / (z * z)};
+    to = {carriedInverseDepth(from.w / z, t_c1.z()), from.variance / (z * z)};
     to.variance += kDepthDrift * kDepthDrift * to.w * to.w;
     const Eigen::Vector2d e = focal_px * parallaxDirection(u1 / focal_px, t_c1);
     sigma_px = std::abs(n.dot(e)) * std::sqrt(to.variance);

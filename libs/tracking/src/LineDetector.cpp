@@ -17,7 +17,9 @@ constexpr int kAnchorThreshold = 4;       ///< of edge_drawing: by how much an a
 constexpr int kLeastPiece_px = 8;         ///< of edge_drawing, at half resolution: less is noise
 
 /// Joins `other` to `line` when both are pieces of one edge.
-bool join(ImageLine& line, const ImageLine& other, double gap_px) {
+bool join(const LineCamera& camera, ImageLine& line, const ImageLine& elsewhere, double gap_px) {
+  if (!camera.mayBeNear(line, elsewhere, kJoinDistance_px)) return false;
+  const ImageLine other = camera.seenFrom(line.axis, elsewhere);
   if (std::abs(line.normal().dot(other.start - line.start)) > kJoinDistance_px) return false;  // most, quickly
   const LineRelation relation = relate(line, other);
   if (relation.angle_rad > kJoinAngle_rad || relation.distance_px > kJoinDistance_px || relation.overlap_px < -gap_px)
@@ -25,6 +27,7 @@ bool join(ImageLine& line, const ImageLine& other, double gap_px) {
   const Eigen::Vector2d d = line.direction();
   if (d.dot(other.start - line.start) < 0) line.start = other.start;
   if (d.dot(other.end - line.end) > 0) line.end = other.end;
+  line = camera.centred(line);
   return true;
 }
 
@@ -33,11 +36,11 @@ void sortLongestFirst(std::vector<ImageLine>& lines) {
                    [](const ImageLine& a, const ImageLine& b) { return a.length() > b.length(); });
 }
 
-std::vector<ImageLine> joined(std::vector<ImageLine> pieces, double gap_px) {
+std::vector<ImageLine> joined(const LineCamera& camera, std::vector<ImageLine> pieces, double gap_px) {
   sortLongestFirst(pieces);
   std::vector<ImageLine> lines;
   for (const ImageLine& piece : pieces)
-    if (std::none_of(lines.begin(), lines.end(), [&](ImageLine& line) { return join(line, piece, gap_px); }))
+    if (std::none_of(lines.begin(), lines.end(), [&](ImageLine& line) { return join(camera, line, piece, gap_px); }))
       lines.push_back(piece);
   sortLongestFirst(lines);
   return lines;
@@ -86,10 +89,10 @@ std::vector<ImageLine> LineDetector::detect(const ImagePyramid& pyramid) {
   std::vector<ImageLine> pieces;
   for (const cv::Vec4f& s : detectRaw(pyramid)) {
     if (std::hypot(s[2] - s[0], s[3] - s[1]) < kPiece * params_.min_length_px) continue;
-    const ImageLine line{camera_.fromImage({s[0], s[1]}), camera_.fromImage({s[2], s[3]})};
+    const ImageLine line = camera_.lineFromImage({s[0], s[1]}, {s[2], s[3]});
     if (const auto oriented = refiner_.orient(pyramid.image(), line)) pieces.push_back(*oriented);
   }
-  return joined(std::move(pieces), camera_.scaled(kJoinGap_px));
+  return joined(camera_, std::move(pieces), camera_.scaled(kJoinGap_px));
 }
 
 }  // namespace lintel

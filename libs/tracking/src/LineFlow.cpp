@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "LineFlow.h"
 
+#include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
 
@@ -26,6 +27,7 @@ constexpr double kNear_px = 20;          ///< points nearer than this have the s
 constexpr double kMaxDeviation_px = 40;  ///< flow further than this from the guess is an error
 
 Eigen::Vector2d toEigen(const cv::Point2f& p) { return {p.x, p.y}; }
+cv::Point2f toPoint(const Eigen::Vector2d& p) { return {static_cast<float>(p.x()), static_cast<float>(p.y())}; }
 
 /// Lays the guessed ends on the fitted line, moved along it by what the samples moved. A patch on a plain edge slides
 /// along it, so that the median of all is more accurate than the ends' own patches.
@@ -40,7 +42,7 @@ ImageLine carryEnds(const ImageLine& guess, const RobustLine& fit, const std::ve
   const auto lay = [&](const Eigen::Vector2d& end) -> Eigen::Vector2d {
     return fit.line.start + d * (d.dot(end - fit.line.start) + shift);
   };
-  return {lay(guess.start), lay(guess.end)};
+  return {lay(guess.start), lay(guess.end), guess.axis};
 }
 
 }  // namespace
@@ -68,28 +70,42 @@ Eigen::Vector2d normalMotion(const ImageLine& turned, const ImageLine& line) {
   return {m.dot(line.start - turned.start) / along, m.dot(line.start - turned.end) / along};
 }
 
+CarriedDepth LineFlow::carriedDepth(const LineDepth& depth, const ImageLine& line, const ImageLine& turned,
+                                    const Eigen::Quaterniond& R_c1_c0, const Eigen::Vector3d& t_c1) const {
+  if (!camera_.camera().wide()) return carry(depth, line, turned, R_c1_c0, t_c1, camera_.focal());
+  const Eigen::Matrix3d R_c0_l0 = LineCamera::R_c_a(line.axis), R_l1_c1 = LineCamera::R_c_a(turned.axis).transpose();
+  const Eigen::Quaterniond R(Eigen::Matrix3d(R_l1_c1 * R_c1_c0.toRotationMatrix() * R_c0_l0));
+  return carry(depth, line, turned, R, R_l1_c1 * t_c1, camera_.focal());
+}
+
 LineFlow::Samples LineFlow::sample(const std::vector<CarriedLine>& lines, const GyroPrediction& gyro,
                                    const PointMotion& points) const {
   Samples samples;
   const auto near_px = static_cast<float>(camera_.scaled(kNear_px));
   const double spacing_px = camera_.scaled(kSpacing_px);
+  const bool wide = camera_.camera().wide();
   for (const CarriedLine& carried : lines) {
     samples.first.push_back(samples.from.size());
     const ImageLine turned = camera_.turned(carried.line, gyro.R_c1_c0());
     const auto turnedAt = [&](double share) {
-      return gyro.turnedPixel(camera_.camera(), carried.line.at(share) / camera_.focal());
+      return gyro.turnedPixel(camera_.camera(), camera_.rayOf(carried.line.at(share), carried.line.axis));
     };
     const NearbyMotion near_start = motionNear(turnedAt(0.1), points.flow, near_px),
                        near_end = motionNear(turnedAt(0.9), points.flow, near_px);
-    Eigen::Vector2d at_start = toEigen(near_start.residual), at_end = toEigen(near_end.residual);
+    // motion in the image as one of undistorted pixels
+    const auto undistorted = [&](const cv::Point2f& motion, double share) -> Eigen::Vector2d {
+      if (!wide) return toEigen(motion);
+      return camera_.imageJacobian(turned.at(share), turned.axis).inverse() * toEigen(motion);
+    };
+    Eigen::Vector2d at_start = undistorted(near_start.residual, 0.1), at_end = undistorted(near_end.residual, 0.9);
     if (carried.motion) {  // across the line its own motion is known better than that of the points nearby
       const Eigen::Vector2d n = turned.normal();
-      at_start += n * (carried.motion->x() + n.dot(toEigen(near_start.change) - at_start));
-      at_end += n * (carried.motion->y() + n.dot(toEigen(near_end.change) - at_end));
+      at_start += n * (carried.motion->x() + n.dot(undistorted(near_start.change, 0.1) - at_start));
+      at_end += n * (carried.motion->y() + n.dot(undistorted(near_end.change, 0.9) - at_end));
     }
     std::optional<CarriedDepth> depth;
     if (carried.depth && carried.depth->epoch == points.step.epoch()) {
-      depth = carry(*carried.depth, carried.line, turned, gyro.R_c1_c0(), points.step.t_c1(), camera_.focal());
+      depth = carriedDepth(*carried.depth, carried.line, turned, gyro.R_c1_c0(), points.step.t_c1());
       if (depth->sigma_px.maxCoeff() < kSureDepth_px) {
         at_start = depth->line.start - turned.start;
         at_end = depth->line.end - turned.end;
@@ -97,16 +113,16 @@ LineFlow::Samples LineFlow::sample(const std::vector<CarriedLine>& lines, const 
     }
     samples.depths.push_back(depth);
     samples.turned.push_back(turned);
-    samples.guessed.push_back({turned.start + at_start, turned.end + at_end});
+    samples.guessed.push_back({turned.start + at_start, turned.end + at_end, turned.axis});
     const int count =
         std::clamp(static_cast<int>(carried.line.length() / spacing_px), params_.min_samples, params_.max_samples);
     for (int i = 0; i < count; ++i) {
       const double share = (i + 0.5) / count;
-      const Eigen::Vector2d from = camera_.toImage(carried.line.at(share));
+      const Eigen::Vector2d from = camera_.toImage(carried.line.at(share), carried.line.axis);
       const Eigen::Vector2d motion = (1 - share) * at_start + share * at_end;
       samples.from.emplace_back(static_cast<float>(from.x()), static_cast<float>(from.y()));
-      samples.guess.push_back(turnedAt(share) +
-                              cv::Point2f(static_cast<float>(motion.x()), static_cast<float>(motion.y())));
+      samples.guess.push_back(wide ? toPoint(camera_.toImage(turned.at(share) + motion, turned.axis))
+                                   : turnedAt(share) + toPoint(motion));
     }
   }
   samples.first.push_back(samples.from.size());
@@ -115,16 +131,16 @@ LineFlow::Samples LineFlow::sample(const std::vector<CarriedLine>& lines, const 
 
 PredictedLine LineFlow::fit(const Samples& samples, std::size_t index, double jump_px,
                             const std::vector<cv::Point2f>& to, const std::vector<unsigned char>& found) const {
+  const ImageLine& guess = samples.guessed[index];
   std::vector<Eigen::Vector2d> guessed_u, found_u;
   for (std::size_t i = samples.first[index]; i < samples.first[index + 1]; ++i) {
     const Eigen::Vector2d px = toEigen(to[i]);
     if (!found[i] || !camera_.camera().contains(px, 1) ||
         cv::norm(to[i] - samples.guess[i]) > camera_.scaled(kMaxDeviation_px))
       continue;
-    guessed_u.push_back(camera_.fromImage(toEigen(samples.guess[i])));
-    found_u.push_back(camera_.fromImage(px));
+    guessed_u.push_back(camera_.fromImage(toEigen(samples.guess[i]), guess.axis));
+    found_u.push_back(camera_.fromImage(px, guess.axis));
   }
-  const ImageLine& guess = samples.guessed[index];
   PredictedLine result{guess, samples.turned[index], guess, jump_px, 0, samples.depths[index], false};
   const auto robust = fitRobustLine(found_u, kFitTolerance_px);
   if (!robust) return result;

@@ -61,6 +61,9 @@ class LineFlow {
                                     const GyroPrediction& gyro, const PointMotion& points, const Reach& reach) const;
   static double typicalDeviation(const std::vector<CarriedLine>& lines, const std::vector<PredictedLine>& followed);
   Samples sample(const std::vector<CarriedLine>& lines, const GyroPrediction& gyro, const PointMotion& points) const;
+  /// carry() between the lines' own cameras.
+  CarriedDepth carriedDepth(const LineDepth& depth, const ImageLine& line, const ImageLine& turned,
+                            const Eigen::Quaterniond& R_c1_c0, const Eigen::Vector3d& t_c1) const;
 
   PredictedLine fit(const Samples& samples, std::size_t index, double jump_px, const std::vector<cv::Point2f>& to,
                     const std::vector<unsigned char>& found) const;

@@ -32,6 +32,11 @@ ImageLine united(const ImageLine& a, const ImageLine& b) {
 }  // namespace
 
 double LineMerger::score(const ImageLine& predicted, const ImageLine& detected) const {
+  if (!camera_.mayBeNear(predicted, detected, params_.merge_distance_px)) return 0;
+  return scoreSeen(predicted, camera_.seenFrom(predicted.axis, detected));
+}
+
+double LineMerger::scoreSeen(const ImageLine& predicted, const ImageLine& detected) const {
   // A short line's direction is uncertain: distances are measured from the longer one.
   const bool longer = predicted.length() >= detected.length();
   const ImageLine &reference = longer ? predicted : detected, &other = longer ? detected : predicted;
@@ -40,7 +45,7 @@ double LineMerger::score(const ImageLine& predicted, const ImageLine& detected) 
   const LineRelation relation = relate(reference, other);
   const double shorter = std::min(predicted.length(), detected.length());
   if (relation.angle_rad > params_.merge_angle_rad || relation.distance_px > params_.merge_distance_px ||
-      relation.overlap_px < -kGap_px * pixel_scale_ || shorter <= 0)
+      relation.overlap_px < -camera_.scaled(kGap_px) || shorter <= 0)
     return 0;
   // A piece that continues the line counts, but less than one beside it.
   const double overlap = 0.2 + 0.8 * std::clamp(relation.overlap_px / shorter, 0.0, 1.0);
@@ -61,14 +66,17 @@ MergedLines LineMerger::merge(const std::vector<ImageLine>& predicted, const std
     if (taken[pair.detected]) continue;
     taken[pair.detected] = 1;
     ++merged.detections[pair.predicted];
-    merged.lines[pair.predicted] = united(merged.lines[pair.predicted], detected[pair.detected]);
+    ImageLine& line = merged.lines[pair.predicted];
+    line = united(line, camera_.seenFrom(line.axis, detected[pair.detected]));
   }
   for (std::size_t d = 0; d < detected.size(); ++d)
     if (!taken[d]) merged.fresh.push_back(detected[d]);
   return merged;
 }
 
-bool LineMerger::duplicates(const ImageLine& a, const ImageLine& b) const {
+bool LineMerger::duplicates(const ImageLine& a, const ImageLine& other) const {
+  if (!camera_.mayBeNear(a, other, kDuplicateDistance_px)) return false;
+  const ImageLine b = camera_.seenFrom(a.axis, other);
   const bool a_longer = a.length() >= b.length();
   const ImageLine &longer = a_longer ? a : b, &shorter = a_longer ? b : a;
   if (std::abs(longer.normal().dot(shorter.start - longer.start)) > kDuplicateDistance_px)

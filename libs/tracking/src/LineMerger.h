@@ -19,9 +19,7 @@ struct MergedLines {
 /// detector split, cut or missed keeps its identity, and each detection belongs to one line at most [Lim2021].
 class LineMerger {
  public:
-  /// `pixel_scale`: of the camera (core/ParamRange.h).
-  explicit LineMerger(const LineTrackerParams& params, double pixel_scale = 1)
-      : params_(params), pixel_scale_(pixel_scale) {}
+  LineMerger(const LineCamera& camera, const LineTrackerParams& params) : camera_(camera), params_(params) {}
 
   /// All lines with the brighter side along their normal; edges of opposite contrast never merge.
   MergedLines merge(const std::vector<ImageLine>& predicted, const std::vector<ImageLine>& detected) const;
@@ -33,8 +31,10 @@ class LineMerger {
   bool duplicates(const ImageLine& a, const ImageLine& b) const;
 
  private:
+  double scoreSeen(const ImageLine& predicted, const ImageLine& detected) const;
+
+  const LineCamera& camera_;
   LineTrackerParams params_;
-  double pixel_scale_;
 };
 
 }  // namespace lintel

@@ -10,10 +10,10 @@ LineObservation lineObservation(const LineCamera& camera, TrackId id, const Imag
                                 int track_length, bool detected) {
   LineObservation observation;
   observation.id = id;
-  observation.start_px = camera.toImage(line.start);
-  observation.end_px = camera.toImage(line.end);
-  observation.start = line.start / camera.focal();
-  observation.end = line.end / camera.focal();
+  observation.start_px = camera.toImage(line.start, line.axis);
+  observation.end_px = camera.toImage(line.end, line.axis);
+  observation.start = camera.rayOf(line.start, line.axis);
+  observation.end = camera.rayOf(line.end, line.axis);
   observation.sigma_px = sigma_px;
   observation.track_length = track_length;
   observation.detected = detected;

@@ -19,14 +19,13 @@ constexpr double kCrowded = 0.5;     ///< of the distance that new points keep: 
 constexpr int kInliersForGyro = 15;  ///< with fewer their rotation does not correct that of the gyroscope
 constexpr int kInliersForDirection = 10;  ///< of a translation
 
-bool inside(const PinholeRadtan& camera, const cv::Point2f& p, double border) {
-  return camera.contains({p.x, p.y}, border);
-}
+bool inside(const Camera& camera, const cv::Point2f& p, double border) { return camera.contains({p.x, p.y}, border); }
 
-TwoViewParams twoViewParams(const PinholeRadtan& camera, double threshold_px) {
+TwoViewParams twoViewParams(const Camera& camera, double threshold_px) {
   TwoViewParams params;
   params.focal_px = camera.meanFocal();
   params.threshold_px = threshold_px;
+  params.wide = camera.wide();
   return params;
 }
 
@@ -37,7 +36,7 @@ PointTracker::PointTracker(const Rig& rig, const PointTrackerParams& params)
       params_(params),
       detector_(params),
       drift_(params.drift_frames, twoViewParams(rig.camera, params.drift_px)),
-      step_(rig.camera.meanFocal()) {}
+      step_(rig.camera.meanFocal(), rig.camera.wide()) {}
 
 PatchFlowParams PointTracker::flowParams(int levels) const {
   return {params_.window_px, levels, params_.max_iterations, kPointSettled_px, kPointTexture};
@@ -123,7 +122,7 @@ PointTracker::Followed PointTracker::follow(const ImagePyramid& pyramid, const G
   followed.outcome.assign(points_.size(), Outcome::kLost);
   std::vector<std::size_t> steady, others;
   for (std::size_t i = 0; i < points_.size(); ++i) {
-    followed.px.push_back(gyro.turnedPixel(camera_, points_[i].normalised));
+    followed.px.push_back(gyro.turnedPixel(camera_, points_[i].ray));
     const auto before = residuals_.find(points_[i].id);
     (before == residuals_.end() ? others : steady).push_back(i);
     if (before != residuals_.end()) followed.px[i] += before->second;
@@ -132,7 +131,7 @@ PointTracker::Followed PointTracker::follow(const ImagePyramid& pyramid, const G
   followFrom(pyramid, steady, kSteadyLevels, followed);
   for (const std::size_t i : steady)
     if (followed.outcome[i] != Outcome::kTracked) {
-      followed.px[i] = gyro.turnedPixel(camera_, points_[i].normalised);
+      followed.px[i] = gyro.turnedPixel(camera_, points_[i].ray);
       others.push_back(i);
     }
   followFrom(pyramid, others, pyramid.levels(), followed);
@@ -154,10 +153,10 @@ void PointTracker::rejectByEpipolarGeometry(Followed& followed, GyroPrediction& 
   std::vector<std::size_t> index;
   for (std::size_t i = 0; i < points_.size(); ++i) {
     if (followed.outcome[i] != Outcome::kTracked) continue;
-    pairs.push_back({points_[i].normalised, camera_.normalise({followed.px[i].x, followed.px[i].y})});
+    pairs.push_back({points_[i].ray, camera_.ray({followed.px[i].x, followed.px[i].y})});
     index.push_back(i);
   }
-  turn_ = turnOfPoints(pairs, camera_.meanFocal());  // before the gyroscope chooses among them
+  turn_ = turnOfPoints(pairs, twoViewParams(camera_, params_.epipolar_px));  // before the gyroscope chooses among them
   const TwoViewMotion motion =
       twoViewMotion(pairs, gyro.R_c1_c0(), gyro.information(), twoViewParams(camera_, params_.epipolar_px));
   for (std::size_t k = 0; k < index.size(); ++k)
@@ -200,13 +199,13 @@ void PointTracker::accept(const Followed& followed, const GyroPrediction& gyro, 
       continue;
     }
     PointObservation p = points_[i];
-    PointFlow flow{followed.px[i], followed.px[i] - gyro.turnedPixel(camera_, p.normalised), std::nullopt};
+    PointFlow flow{followed.px[i], followed.px[i] - gyro.turnedPixel(camera_, p.ray), std::nullopt};
     if (const auto before = residuals_.find(p.id); before != residuals_.end())
       flow.change = flow.residual - before->second;
     residuals[p.id] = flow.residual;
     flow_.push_back(flow);
     p.px = {followed.px[i].x, followed.px[i].y};
-    p.normalised = camera_.normalise(p.px);
+    p.ray = camera_.ray(p.px);
     ++p.track_length;
     kept.push_back(p);
   }
@@ -237,7 +236,7 @@ void PointTracker::addNew(const ImagePyramid& pyramid, PointStatistics& statisti
     PointObservation p;
     p.id = next_id_++;
     p.px = {px.x, px.y};
-    p.normalised = camera_.normalise(p.px);
+    p.ray = camera_.ray(p.px);
     anchors_.add(p.id, pyramid.image(), px);
     points_.push_back(p);
     ++statistics.detected;

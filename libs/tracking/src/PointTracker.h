@@ -71,7 +71,7 @@ class PointTracker {
   std::vector<cv::Point2f> pixels() const;
   PatchFlowParams flowParams(int levels) const;
 
-  PinholeRadtan camera_;
+  Camera camera_;
   PointTrackerParams params_;
   CornerDetector detector_;
   DriftCheck drift_;

@@ -17,7 +17,7 @@ constexpr int kRounds = 4, kHypotheses = 20;
 constexpr double kTranslation_rad = 0.05;  // by which translation may pass for rotation: 1 m/s at 1 m in 50 ms
 
 /// The rotation R_c1_c0 that moves points as they were seen to move, robustly, no translation considered.
-Eigen::Quaterniond rotationAlone(const std::vector<TwoViewPair>& pairs) {
+Eigen::Quaterniond rotationAlone(const std::vector<TwoViewPair>& pairs, bool wide) {
   Eigen::Quaterniond R_c1_c0 = Eigen::Quaterniond::Identity();
   double width = 1;  // of the robust loss: everything counts at first
   for (int round = 0; round < kRounds; ++round) {
@@ -25,12 +25,15 @@ Eigen::Quaterniond rotationAlone(const std::vector<TwoViewPair>& pairs) {
     Eigen::Vector3d b = Eigen::Vector3d::Zero();
     std::vector<double> distances;
     for (const TwoViewPair& pair : pairs) {
-      const Eigen::Vector3d f = R_c1_c0 * pair.x0.homogeneous();
+      const Eigen::Vector3d f = R_c1_c0 * pair.x0;
       const double z = std::max(f.z(), 1e-3);
-      const Eigen::Vector2d e = f.head<2>() / z - pair.x1;
-      Eigen::Matrix<double, 2, 3> projection;
-      projection << 1 / z, 0, -f.x() / (z * z), 0, 1 / z, -f.y() / (z * z);
-      const Eigen::Matrix<double, 2, 3> J = -projection * skew(f);
+      Eigen::Vector3d e = f - pair.x1;  // on the sphere, else on the plane z = 1
+      Eigen::Matrix3d projection = Eigen::Matrix3d::Identity();
+      if (!wide) {
+        e << f.head<2>() / z - pair.x1.head<2>(), 0;
+        projection << 1 / z, 0, -f.x() / (z * z), 0, 1 / z, -f.y() / (z * z), 0, 0, 0;
+      }
+      const Eigen::Matrix3d J = -projection * skew(f);
       const double weight = 1 / (1 + e.squaredNorm() / (width * width));
       H += weight * J.transpose() * J;
       b += weight * J.transpose() * e;
@@ -51,12 +54,13 @@ std::vector<TwoViewPair> evenly(const std::vector<TwoViewPair>& pairs) {
 
 }  // namespace
 
-std::optional<CameraTurn> turnOfPoints(const std::vector<TwoViewPair>& pairs, double focal_px) {
+std::optional<CameraTurn> turnOfPoints(const std::vector<TwoViewPair>& pairs, const TwoViewParams& camera) {
   if (pairs.size() < kLeastPairs) return std::nullopt;
   const std::vector<TwoViewPair> chosen = evenly(pairs);
-  const Eigen::Quaterniond R_c1_c0 = rotationAlone(chosen);
+  const Eigen::Quaterniond R_c1_c0 = rotationAlone(chosen, camera.wide);
   TwoViewParams params;
-  params.focal_px = focal_px;
+  params.focal_px = camera.focal_px;
+  params.wide = camera.wide;
   params.hypotheses = kHypotheses;
   const Eigen::Matrix3d loose = Eigen::Matrix3d::Identity() / (kTranslation_rad * kTranslation_rad);
   const TwoViewMotion motion = twoViewMotion(chosen, R_c1_c0, loose, params);

@@ -11,7 +11,7 @@ namespace lintel {
 
 /// Rotation between two views from points alone, whatever a gyroscope says; without times. Begins with the rotation
 /// that explains most of the points' motion when nothing is translated. Empty when there are fewer than 15 pairs, or
-/// half of them fit no common motion.
-std::optional<CameraTurn> turnOfPoints(const std::vector<TwoViewPair>& pairs, double focal_px);
+/// half of them fit no common motion. Of `camera` focal length and kind of rays count.
+std::optional<CameraTurn> turnOfPoints(const std::vector<TwoViewPair>& pairs, const TwoViewParams& camera);
 
 }  // namespace lintel

@@ -20,7 +20,7 @@ constexpr double kGate = 4;             ///< standard deviations; a measurement 
 /// One point in both frames, as the translation sees it.
 struct StepTranslation::Ray {
   TrackId id;
-  Eigen::Vector2d x, motion;          ///< in the turned old frame, and the motion from there
+  Eigen::Vector3d x, motion;          ///< in the turned old frame, and the motion from there
   std::optional<InverseDepth> depth;  ///< in the turned old frame
 };
 
@@ -30,9 +30,11 @@ std::vector<StepTranslation::Ray> StepTranslation::raysOf(const std::vector<Pair
   std::vector<Ray> rays;
   rays.reserve(pairs.size());
   for (const Pair& pair : pairs) {
-    const Eigen::Vector3d f = R * pair.x0.homogeneous();
-    const double z = std::max(f.z(), 0.1);
-    Ray ray{pair.id, f.head<2>() / z, pair.x1 - f.head<2>() / z, std::nullopt};
+    Eigen::Vector3d f = R * pair.x0.head<2>().homogeneous();
+    if (wide_) f = R * pair.x0;
+    const double z = wide_ ? 1 : std::max(f.z(), 0.1);
+    const Eigen::Vector3d x = wide_ ? f : Eigen::Vector3d(f.x() / z, f.y() / z, 1);
+    Ray ray{pair.id, x, pair.x1 - x, std::nullopt};
     if (const auto known = points_.find(pair.id); known != points_.end())
       ray.depth = InverseDepth{known->second.w / z, known->second.variance / (z * z)};
     rays.push_back(ray);
@@ -45,9 +47,9 @@ double StepTranslation::lengthOf(const std::vector<Ray>& rays, const Eigen::Vect
   double sum = 0;
   for (const Ray& ray : rays) {
     if (!ray.depth || !(ray.depth->w > 3 * std::sqrt(ray.depth->variance))) continue;
-    const Eigen::Vector2d e = parallaxDirection(ray.x, direction);
+    const Eigen::Vector3d e = parallax(ray.x, direction);
     const double moved = ray.motion.dot(e) / std::max(e.squaredNorm(), 1e-9);  // length * inverse depth now
-    const double length = moved / (ray.depth->w * std::max(1 - moved * direction.z(), 0.2));
+    const double length = moved / (ray.depth->w * std::max(1 - moved * along(ray.x, direction), 0.2));
     const double weight = ray.depth->w * e.norm();
     lengths.emplace_back(length, weight);
     sum += weight;
@@ -66,10 +68,10 @@ void StepTranslation::updatePoints(const std::vector<Ray>& rays, const Eigen::Ve
   for (const Ray& ray : rays) {
     std::optional<InverseDepth> depth = ray.depth;
     if (depth) {
-      depth->w = carriedInverseDepth(depth->w, length * direction);
+      depth->w = carriedInverseDepth(depth->w, along(ray.x, length * direction));
       depth->variance += kLengthDrift * kLengthDrift * depth->w * depth->w;
     }
-    const Eigen::Vector2d e = length * parallaxDirection(ray.x, direction);
+    const Eigen::Vector3d e = length * parallax(ray.x, direction);
     const double squares = e.squaredNorm();
     if (squares > 1e-12) {
       const double w = ray.motion.dot(e) / squares;
@@ -109,7 +111,7 @@ void StepTranslation::update(const std::vector<Pair>& pairs, const Eigen::Quater
   }
   Eigen::Vector3d direction = *direction_c1;
   double forward = 0;  // depths are positive
-  for (const Ray& ray : rays) forward += parallaxDirection(ray.x, direction).dot(ray.motion);
+  for (const Ray& ray : rays) forward += parallax(ray.x, direction).dot(ray.motion);
   if (forward < 0) direction = -direction;
   double length = lengthOf(rays, direction);
   if (!(length > 0)) {

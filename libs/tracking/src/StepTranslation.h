@@ -23,10 +23,11 @@ class StepTranslation {
  public:
   struct Pair {
     TrackId id;
-    Eigen::Vector2d x0, x1;  ///< undistorted normalised coordinates in both frames
+    Eigen::Vector3d x0, x1;  ///< rays in both frames (Camera.h)
   };
 
-  explicit StepTranslation(double focal_px) : focal_px_(focal_px) {}
+  /// `wide`: rays are on the unit sphere, and depths are distances.
+  explicit StepTranslation(double focal_px, bool wide = false) : focal_px_(focal_px), wide_(wide) {}
 
   /// `direction_c1`: unit translation of the old camera seen from the new one, sign open; empty when it is not known.
   void update(const std::vector<Pair>& pairs, const Eigen::Quaterniond& R_c1_c0,
@@ -45,7 +46,15 @@ class StepTranslation {
   double lengthOf(const std::vector<Ray>& rays, const Eigen::Vector3d& direction) const;
   void updatePoints(const std::vector<Ray>& rays, const Eigen::Vector3d& direction, double length);
 
+  /// Depth that a ray gains with the translation `t_c1`.
+  double along(const Eigen::Vector3d& x, const Eigen::Vector3d& t_c1) const { return wide_ ? x.dot(t_c1) : t_c1.z(); }
+  /// Effect of the translation on the place of a ray: parallaxDirection of any kind of rays.
+  Eigen::Vector3d parallax(const Eigen::Vector3d& x, const Eigen::Vector3d& t_c1) const {
+    return t_c1 - x * along(x, t_c1);
+  }
+
   double focal_px_;
+  bool wide_;
   Eigen::Vector3d t_c1_ = Eigen::Vector3d::Zero();
   int epoch_ = 0;
   double typical_ = 0;
@@ -59,6 +68,7 @@ inline Eigen::Vector2d parallaxDirection(const Eigen::Vector2d& x, const Eigen::
 }
 
 /// Inverse depth in the new frame of what has inverse depth `w` in the turned old one.
-inline double carriedInverseDepth(double w, const Eigen::Vector3d& t_c1) { return w / std::max(1 + w * t_c1.z(), 0.2); }
+/// `along_c1`: the depth that the translation adds, t_z.
+inline double carriedInverseDepth(double w, double along_c1) { return w / std::max(1 + w * along_c1, 0.2); }
 
 }  // namespace lintel

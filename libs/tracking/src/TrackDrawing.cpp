@@ -28,13 +28,13 @@ cv::Point drawn(const Eigen::Vector2d& px) {
   return {static_cast<int>(std::lround(kEnlarge * px.x())), static_cast<int>(std::lround(kEnlarge * px.y()))};
 }
 
-void drawLine(cv::Mat& canvas, const PinholeRadtan& camera, const LineObservation& line) {
+void drawLine(cv::Mat& canvas, const Camera& camera, const LineObservation& line) {
   constexpr int kPieces = 24;  // short enough to bend with the lens, and to be dashes
   const cv::Scalar colour = colourOf(line.id);
   for (int i = 0; i < kPieces; ++i) {
     if (!line.detected && i % 2 == 1) continue;
     const auto at = [&](int k) {
-      return drawn(camera.toPixel(line.start + (line.end - line.start) * k / double(kPieces)));
+      return drawn(camera.project(line.start + (line.end - line.start) * k / double(kPieces)));
     };
     cv::line(canvas, at(i), at(i + 1), colour, 2, cv::LINE_AA);
   }

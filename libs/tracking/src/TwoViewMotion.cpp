@@ -33,46 +33,53 @@ class Sequence {
 };
 
 struct Rays {
-  Eigen::Vector3d f0, f1;  ///< z = 1; f0 turned into frame 1 by the predicted rotation
+  Eigen::Vector3d f0, f1;  ///< z = 1 or unit length; f0 turned into frame 1 by the predicted rotation
 };
 
-std::vector<Rays> turnedRays(const std::vector<TwoViewPair>& pairs, const Eigen::Matrix3d& R) {
+/// A ray after a turn, of length 1 or z = 1 again.
+Eigen::Vector3d turnedRay(const Eigen::Vector3d& f0, bool wide) { return wide ? f0 : f0 / std::max(f0.z(), 1e-3); }
+
+/// By what x . line is a distance of x from the epipolar line: a line of the plane z = 1, or a great circle.
+double lineSize(const Eigen::Vector3d& line, bool wide) { return wide ? line.norm() : line.head<2>().norm(); }
+
+std::vector<Rays> turnedRays(const std::vector<TwoViewPair>& pairs, const Eigen::Matrix3d& R, bool wide) {
   std::vector<Rays> rays;
   rays.reserve(pairs.size());
   for (const TwoViewPair& pair : pairs) {
-    Eigen::Vector3d f0 = R * pair.x0.homogeneous();
-    rays.push_back({f0 / std::max(f0.z(), 1e-3), pair.x1.homogeneous()});
+    Eigen::Vector3d f0 = R * pair.x0.head<2>().homogeneous();
+    if (wide) f0 = R * pair.x0;
+    rays.push_back({turnedRay(f0, wide), pair.x1});
   }
   return rays;
 }
 
-/// Signed distance of f1 from the epipolar line of f0, normalised units. Never more than the distance from f0 to f1,
+/// Signed distance of f1 from the epipolar line of f0, as rays. Never more than the distance from f0 to f1,
 /// because the line passes through f0: a point that only follows the rotation fits any translation.
-double epipolarDistance(const Rays& ray, const Eigen::Vector3d& t) {
+double epipolarDistance(const Rays& ray, const Eigen::Vector3d& t, bool wide) {
   const Eigen::Vector3d line = t.cross(ray.f0);
-  return line.dot(ray.f1) / std::max(line.head<2>().norm(), 1e-9);
+  return line.dot(ray.f1) / std::max(lineSize(line, wide), 1e-9);
 }
 
-double truncatedCost(const std::vector<Rays>& rays, const Eigen::Vector3d& t, double threshold) {
+double truncatedCost(const std::vector<Rays>& rays, const Eigen::Vector3d& t, double threshold, bool wide) {
   double cost = 0;
   for (const Rays& ray : rays) {
-    const double r = epipolarDistance(ray, t) / threshold;
+    const double r = epipolarDistance(ray, t, wide) / threshold;
     cost += std::min(r * r, 1.0);
   }
   return cost;
 }
 
-Eigen::Vector3d bestDirection(const std::vector<Rays>& rays, double threshold, int hypotheses) {
+Eigen::Vector3d bestDirection(const std::vector<Rays>& rays, double threshold, const TwoViewParams& params) {
   Eigen::Vector3d best = Eigen::Vector3d::UnitX();
-  double best_cost = truncatedCost(rays, best, threshold);
+  double best_cost = truncatedCost(rays, best, threshold, params.wide);
   Sequence sequence;
-  for (int h = 0; h < hypotheses; ++h) {
+  for (int h = 0; h < params.hypotheses; ++h) {
     const Rays& a = rays[sequence.below(rays.size())];
     const Rays& b = rays[sequence.below(rays.size())];
     const Eigen::Vector3d t = a.f0.cross(a.f1).cross(b.f0.cross(b.f1));
     const double norm = t.norm();
     if (!(norm > 1e-12)) continue;
-    const double cost = truncatedCost(rays, t / norm, threshold);
+    const double cost = truncatedCost(rays, t / norm, threshold, params.wide);
     if (cost < best_cost) {
       best_cost = cost;
       best = t / norm;
@@ -89,18 +96,18 @@ struct NormalEquations {
 };
 
 NormalEquations linearise(const std::vector<Rays>& rays, const Eigen::Vector3d& delta, const Eigen::Vector3d& t,
-                          const Eigen::Matrix<double, 3, 2>& B, double noise, double robust_scale) {
+                          const Eigen::Matrix<double, 3, 2>& B, double noise, bool wide) {
   NormalEquations out;
   const Eigen::Quaterniond dR = expRotation(delta);
   for (const Rays& ray : rays) {
     const Eigen::Vector3d f0 = dR * ray.f0;
     const Eigen::Vector3d m = f0.cross(ray.f1);
-    const double scale = 1.0 / (std::max(t.cross(f0).head<2>().norm(), 1e-3) * noise);
+    const double scale = 1.0 / (std::max(lineSize(t.cross(f0), wide), 1e-3) * noise);
     const double r = t.dot(m) * scale;
     Vector5d J;
     J.head<3>() = f0.cross(ray.f1.cross(t)) * scale;
     J.tail<2>() = B.transpose() * m * scale;
-    const double weight = 1.0 / (1.0 + r * r / (robust_scale * robust_scale));
+    const double weight = 1.0 / (1.0 + r * r / (kRobustScale * kRobustScale));
     out.H += weight * J * J.transpose();
     out.g += weight * J * r;
   }
@@ -112,7 +119,7 @@ void refine(const std::vector<Rays>& rays, const Eigen::Matrix3d& R_information,
   const double noise = params.noise_px / params.focal_px;
   for (int iteration = 0; iteration < 6; ++iteration) {
     const Eigen::Matrix<double, 3, 2> B = tangentBasis(motion.direction);
-    NormalEquations eq = linearise(rays, motion.delta, motion.direction, B, noise, kRobustScale);
+    NormalEquations eq = linearise(rays, motion.delta, motion.direction, B, noise, params.wide);
     // Without translation the direction is free: the damping holds it, and its freedom is taken out of the rotation's
     // information by the Schur complement below.
     const Eigen::Matrix2d H_tt =
@@ -139,19 +146,18 @@ TwoViewMotion twoViewMotion(const std::vector<TwoViewPair>& pairs, const Eigen::
   motion.inliers = static_cast<int>(pairs.size());
   if (pairs.size() < kMinPairs) return motion;
 
-  std::vector<Rays> rays = turnedRays(pairs, R_predicted.toRotationMatrix());
+  std::vector<Rays> rays = turnedRays(pairs, R_predicted.toRotationMatrix(), params.wide);
   const double threshold = params.threshold_px / params.focal_px;
   // An uncertain rotation moves every point: the tolerance of the hypotheses is larger by that.
   const double rotation_sigma = std::sqrt(R_information.inverse().trace() / 3);
-  motion.direction = bestDirection(rays, threshold + rotation_sigma, params.hypotheses);
+  motion.direction = bestDirection(rays, threshold + rotation_sigma, params);
   refine(rays, R_information, params, motion);
 
   const Eigen::Quaterniond dR = expRotation(motion.delta);
   motion.inliers = 0;
   for (std::size_t i = 0; i < rays.size(); ++i) {
-    const Eigen::Vector3d f0 = dR * rays[i].f0;
-    const Rays turned{f0 / std::max(f0.z(), 1e-3), rays[i].f1};
-    motion.inlier[i] = std::abs(epipolarDistance(turned, motion.direction)) < threshold;
+    const Rays turned{turnedRay(dR * rays[i].f0, params.wide), rays[i].f1};
+    motion.inlier[i] = std::abs(epipolarDistance(turned, motion.direction, params.wide)) < threshold;
     motion.inliers += motion.inlier[i];
   }
   return motion;

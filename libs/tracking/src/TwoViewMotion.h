@@ -7,9 +7,9 @@
 
 namespace lintel {
 
-/// One point in two frames, undistorted normalised coordinates.
+/// One point in two frames: its rays (Camera.h).
 struct TwoViewPair {
-  Eigen::Vector2d x0, x1;
+  Eigen::Vector3d x0, x1;
 };
 
 /// Relative motion of two views from points, the rotation known roughly.
@@ -22,10 +22,11 @@ struct TwoViewMotion {
 };
 
 struct TwoViewParams {
-  double focal_px = 460;      ///< turns normalised units into pixels
+  double focal_px = 460;      ///< turns lengths of rays into pixels
   double threshold_px = 1.0;  ///< largest distance from the epipolar line
   double noise_px = 0.3;      ///< of a tracked position; scales `information`
   int hypotheses = 60;
+  bool wide = false;  ///< whether rays are on the unit sphere
 };
 
 /// Epipolar consistency with a rotation known from the gyroscope: RANSAC over the translation direction (two points

@@ -45,7 +45,7 @@ TEST(GradientsAcross, readsPixelsAroundTheImage) {
 }
 
 TEST(SideLevels, AreTheGreyLevelsBesideTheEdge) {
-  const PinholeRadtan pinhole = testing::testRig().camera;
+  const Camera pinhole = testing::testRig().camera;
   const LineCamera camera(pinhole);
   cv::Mat image(pinhole.height, pinhole.width, CV_8U, cv::Scalar(150));
   image.rowRange(0, 100) = 70;

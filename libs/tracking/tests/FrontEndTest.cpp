@@ -54,14 +54,14 @@ TEST(FrontEnd, followsPointsThroughRotationWithABiasedGyro) {
   const auto tracks = trackTurning(scenes, pointsOnly(), kRate, {0.05, -0.05, 0.05});
   const Eigen::Quaterniond R_c5_c0 = expRotation(kRate * 0.25).conjugate();
   std::map<TrackId, Eigen::Vector2d> first;
-  for (const PointObservation& p : tracks.front().points) first[p.id] = p.normalised;
+  for (const PointObservation& p : tracks.front().points) first[p.id] = p.ray.head<2>();
   EXPECT_GT(first.size(), 50u);
   std::vector<double> errors_px;
   for (const PointObservation& p : tracks.back().points) {
     if (!first.count(p.id)) continue;
     EXPECT_EQ(p.track_length, 6);
     const Eigen::Vector3d ray = R_c5_c0 * first[p.id].homogeneous();
-    errors_px.push_back((ray.head<2>() / ray.z() - p.normalised).norm() * 300);
+    errors_px.push_back((ray.head<2>() / ray.z() - p.ray.head<2>()).norm() * 300);
   }
   ASSERT_GT(errors_px.size(), 40u);
   std::sort(errors_px.begin(), errors_px.end());
@@ -94,12 +94,12 @@ TEST(FrontEnd, followsALineAndKeepsItsEnds) {
     const LineObservation &before = tracks.front().lines[i], &after = tracks.back().lines[i];
     EXPECT_EQ(before.id, after.id);
     EXPECT_EQ(after.track_length, 6);
-    const Eigen::Vector3d start = R_c5_c0 * before.start.homogeneous(), end = R_c5_c0 * before.end.homogeneous();
-    const Eigen::Vector3d seen = after.start.homogeneous().cross(after.end.homogeneous());
+    const Eigen::Vector3d start = R_c5_c0 * before.start, end = R_c5_c0 * before.end;
+    const Eigen::Vector3d seen = after.start.cross(after.end);
     EXPECT_LT(std::abs(seen.dot(start / start.z())) / seen.head<2>().norm() * 300, 0.5);
     EXPECT_LT(std::abs(seen.dot(end / end.z())) / seen.head<2>().norm() * 300, 0.5);
-    EXPECT_LT((start.head<2>() / start.z() - after.start).norm() * 300, 12);
-    EXPECT_LT((end.head<2>() / end.z() - after.end).norm() * 300, 12);
+    EXPECT_LT((start / start.z() - after.start).norm() * 300, 12);
+    EXPECT_LT((end / end.z() - after.end).norm() * 300, 12);
   }
 }
 

@@ -19,6 +19,39 @@ TEST(LineCamera, goesThroughTheLensAndBack) {
   EXPECT_LT((J.col(1) - (camera.toImage(u + v) - camera.toImage(u - v)) / 2e-4).norm(), 1e-6);
 }
 
+Camera fisheye() {
+  return {752, 480, 259.7, 259.4, 372.3, 243.1, {0.0034824, 0.000715, -0.0020532, 0.00020294}, LensModel::kEquidistant};
+}
+
+TEST(LineCamera, aWideLensIsSeenAlongTheAxisOfALine) {
+  const LineCamera camera(fisheye());
+  for (const Eigen::Vector2d& px : {Eigen::Vector2d(376, 240), Eigen::Vector2d(30, 240), Eigen::Vector2d(700, 30)}) {
+    const ImageLine line = camera.lineFromImage(px, px + Eigen::Vector2d(20, 40));
+    EXPECT_LT((line.start + line.end).norm(), 0.1 * line.length());  // about the axis
+    EXPECT_NEAR(line.length(), 45, 20) << "of the image's size, also at the border";
+    const Eigen::Vector2d u = line.at(0.3), h(1e-4, 0), v(0, 1e-4);
+    const auto toImage = [&](const Eigen::Vector2d& at) { return camera.toImage(at, line.axis); };
+    EXPECT_LT((camera.fromImage(toImage(u), line.axis) - u).norm(), 1e-7);
+    const Eigen::Matrix2d J = camera.imageJacobian(u, line.axis);
+    EXPECT_LT((J.col(0) - (toImage(u + h) - toImage(u - h)) / 2e-4).norm(), 1e-6);
+    EXPECT_LT((J.col(1) - (toImage(u + v) - toImage(u - v)) / 2e-4).norm(), 1e-6);
+    EXPECT_TRUE(camera.sees(u, 1, line.axis));
+  }
+}
+
+TEST(LineCamera, aLineStaysTheSameSeenAlongAnotherAxis) {
+  const LineCamera camera(fisheye());
+  const ImageLine line = camera.lineFromImage({100, 100}, {130, 220}),
+                  other = camera.seenFrom(camera.lineFromImage({120, 140}, {200, 240}).axis, line),
+                  back = camera.seenFrom(line.axis, other);
+  EXPECT_GT((other.axis - line.axis).norm(), 0.05);
+  EXPECT_LT((camera.toImage(other.start, other.axis) - Eigen::Vector2d(100, 100)).norm(), 1e-7);
+  EXPECT_LT((back.start - line.start).norm() + (back.end - line.end).norm(), 1e-7);
+  const Eigen::Quaterniond R_c1_c0(Eigen::AngleAxisd(0.1, Eigen::Vector3d(0.2, 0.9, 0.1).normalized()));
+  const ImageLine turned = camera.turned(line, R_c1_c0);
+  EXPECT_LT((camera.rayOf(turned.end, turned.axis) - R_c1_c0 * camera.rayOf(line.end, line.axis)).norm(), 1e-12);
+}
+
 TEST(LineCamera, clipsAtTheImageBorder) {
   const LineCamera camera(testing::testRig().camera);
   const auto clipped = camera.clip({{0, 0}, {2000, 0}}, 4);
@@ -29,7 +62,7 @@ TEST(LineCamera, clipsAtTheImageBorder) {
 }
 
 TEST(LineCamera, givesLengthsOfTheReferenceCamera) {
-  PinholeRadtan pinhole = testing::testRig().camera;
+  Camera pinhole = testing::testRig().camera;
   pinhole.fx = pinhole.fy = 916;
   EXPECT_EQ(LineCamera(pinhole).scaled(15), 30);
 }

@@ -21,7 +21,7 @@ class StepTranslationTest : public ::testing::Test {
     std::vector<StepTranslation::Pair> pairs;
     for (std::size_t i = 0; i < points_.size(); ++i) {
       const Eigen::Vector3d after = R_c0_c1.conjugate() * (points_[i] - t_c0);
-      pairs.push_back({first_id + i, points_[i].hnormalized(), after.hnormalized()});
+      pairs.push_back({first_id + i, points_[i] / points_[i].z(), after / after.z()});
       points_[i] = after;
     }
     const Eigen::Vector3d t_c1 = R_c0_c1.conjugate() * -t_c0;

@@ -22,8 +22,8 @@ inline Rig testRig() {
   rig.camera.fx = rig.camera.fy = 300;
   rig.camera.cx = 240;
   rig.camera.cy = 160;
-  rig.camera.k1 = -0.28;
-  rig.camera.k2 = 0.07;
+  rig.camera.lens[0] = -0.28;
+  rig.camera.lens[1] = 0.07;
   rig.T_b_c.q = Eigen::Quaterniond(0, std::sqrt(0.5), std::sqrt(0.5), 0);  // axes swapped: a mix-up shows
   return rig;
 }

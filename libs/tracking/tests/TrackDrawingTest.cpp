@@ -23,10 +23,10 @@ TEST(TrackDrawing, drawsPointsAndLinesInColour) {
   tracks.points.push_back(point);
   LineObservation line;
   line.id = 2;
-  line.start = {-0.2, 0.2};
-  line.end = {0.2, 0.2};
-  line.start_px = rig.camera.toPixel(line.start);
-  line.end_px = rig.camera.toPixel(line.end);
+  line.start = {-0.2, 0.2, 1};
+  line.end = {0.2, 0.2, 1};
+  line.start_px = rig.camera.project(line.start);
+  line.end_px = rig.camera.project(line.end);
   tracks.lines.push_back(line);
 
   const test::TempFolder folder;
@@ -39,7 +39,7 @@ TEST(TrackDrawing, drawsPointsAndLinesInColour) {
     return std::max({c[0], c[1], c[2]}) - std::min({c[0], c[1], c[2]}) > 100;
   };
   EXPECT_TRUE(coloured(point.px));
-  EXPECT_TRUE(coloured(rig.camera.toPixel({-0.15, 0.2})));
+  EXPECT_TRUE(coloured(rig.camera.project({-0.15, 0.2, 1})));
   EXPECT_FALSE(coloured({300, 40}));
 }
 

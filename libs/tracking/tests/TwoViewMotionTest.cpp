@@ -17,7 +17,7 @@ std::vector<TwoViewPair> pairsOf(const Eigen::Quaterniond& R_c1_c0, const Eigen:
     const double depth = 2 + 6 * std::fmod(i * 0.618, 1.0);
     const Eigen::Vector3d p_c0(depth * (-0.7 + 0.023 * i), depth * (0.45 * std::sin(1.7 * i)), depth);
     const Eigen::Vector3d p_c1 = R_c1_c0 * p_c0 + p_c1_c0;
-    pairs.push_back({p_c0.head<2>() / p_c0.z(), p_c1.head<2>() / p_c1.z()});
+    pairs.push_back({p_c0 / p_c0.z(), p_c1 / p_c1.z()});
   }
   return pairs;
 }

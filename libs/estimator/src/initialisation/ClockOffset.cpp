@@ -40,8 +40,8 @@ void addRays(const FrameTracks& a, const FrameTracks& b, const Eigen::Quaternion
   }
   const std::size_t step = std::max<std::size_t>(1, (common.size() + kMostRays - 1) / kMostRays);
   for (std::size_t i = 0; i < common.size(); i += step)
-    pair.rays.emplace_back(R_b_c * a.points[common[i].first].normalised.homogeneous().normalized(),
-                           R_b_c * b.points[common[i].second].normalised.homogeneous().normalized());
+    pair.rays.emplace_back(R_b_c * a.points[common[i].first].ray.normalized(),
+                           R_b_c * b.points[common[i].second].ray.normalized());
 }
 
 std::vector<TimedPair> timedPairs(const std::vector<FrameTracks>& frames, const GyroPath& path, const Rig& rig) {

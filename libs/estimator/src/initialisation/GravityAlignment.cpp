@@ -91,7 +91,7 @@ std::vector<PointSystem> collectPoints(const SlidingWindow& window, const std::v
     PointSystem point;
     for (const PointSighting& s : track.sightings) {
       const std::size_t k = index.at(s.frame);
-      point.rays.push_back({k, motions[k].R * (window.T_b_c().q * s.observation.position.homogeneous().normalized())});
+      point.rays.push_back({k, motions[k].R * (window.T_b_c().q * s.observation.ray.normalized())});
     }
     points.push_back(std::move(point));
   }

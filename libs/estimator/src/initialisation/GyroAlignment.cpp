@@ -18,8 +18,7 @@ std::vector<std::map<TrackId, Eigen::Vector3d>> raysInBody(const SlidingWindow& 
   std::vector<std::map<TrackId, Eigen::Vector3d>> rays(window.frames.size());
   const Eigen::Quaterniond R_b_c = window.T_b_c().q;
   for (const auto& [id, track] : window.points)
-    for (const PointSighting& s : track.sightings)
-      rays[index.at(s.frame)][id] = R_b_c * s.observation.position.homogeneous().normalized();
+    for (const PointSighting& s : track.sightings) rays[index.at(s.frame)][id] = R_b_c * s.observation.ray.normalized();
   return rays;
 }
 

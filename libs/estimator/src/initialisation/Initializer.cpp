@@ -76,9 +76,9 @@ double medianDisparityPx(const SlidingWindow& window, std::size_t frame_a, std::
       if (s.frame == b) in_b = &s;
     }
     if (!in_a || !in_b) continue;
-    const Eigen::Vector3d turned = R_c0_c1 * in_b->observation.position.homogeneous();
-    if (turned.z() < 0.1) continue;
-    disparities.push_back((turned.head<2>() / turned.z() - in_a->observation.position).norm());
+    const Eigen::Vector3d turned = R_c0_c1 * in_b->observation.ray;
+    if (!window.camera().wide() && turned.z() < 0.1) continue;
+    disparities.push_back((window.camera().rayTo(turned) - in_a->observation.ray).norm());
   }
   return disparities.size() < 10 ? -1 : upperMedian(disparities) * window.camera().meanFocal();
 }

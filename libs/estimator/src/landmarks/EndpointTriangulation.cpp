@@ -26,12 +26,12 @@ struct SeenPoint {
 SeenPoint triangulateEnd(const SlidingWindow& window, const LineTrack& track, bool start) {
   Eigen::Matrix3d A = Eigen::Matrix3d::Zero();  // the point nearest to all rays
   Eigen::Vector3d b = Eigen::Vector3d::Zero();
-  std::vector<std::pair<Pose, Eigen::Vector2d>> views;
+  std::vector<std::pair<Pose, Eigen::Vector3d>> views;
   for (const LineSighting& s : track.sightings) {
     if (!window.camera().contains(start ? s.start_px : s.end_px, kBorder_px)) continue;
     const Pose T_w_c = window.T_w_c(window.frame(s.frame));
-    const Eigen::Vector2d seen = (start ? s.start : s.end).corrected(window.correction.data());
-    const Eigen::Vector3d ray = T_w_c.q * seen.homogeneous().normalized();
+    const Eigen::Vector3d seen = (start ? s.start : s.end).corrected(window.correction.data());
+    const Eigen::Vector3d ray = T_w_c.q * seen.normalized();
     const Eigen::Matrix3d across = Eigen::Matrix3d::Identity() - ray * ray.transpose();
     A += across;
     b += across * T_w_c.p;
@@ -43,8 +43,8 @@ SeenPoint triangulateEnd(const SlidingWindow& window, const LineTrack& track, bo
   double sum = 0;
   for (const auto& [T_w_c, seen] : views) {
     const Eigen::Vector3d p_c = T_w_c.inverse() * p_w;
-    if (p_c.z() < 0.05) return {EndsVerdict::kTooEarly};
-    sum += (p_c.head<2>() / p_c.z() - seen).squaredNorm();
+    if (window.camera().depth(p_c, seen) < 0.05) return {EndsVerdict::kTooEarly};
+    sum += (window.camera().rayTo(p_c) - seen).squaredNorm();
   }
   const double focal = window.camera().meanFocal();
   if (std::sqrt(sum / static_cast<double>(views.size())) * focal > kMaxError_px) return {};

@@ -23,8 +23,8 @@ LineUncertainty uncertaintyOf(const OrthonormalLine& line, const Eigen::Matrix4d
 double planeSigma(const SlidingWindow& window, const FactorParams& params, const LineSighting& s,
                   const Eigen::Vector3d& d_w) {
   const Eigen::Vector3d d_c = window.T_w_c(window.frame(s.frame)).q.conjugate() * d_w;
-  const Eigen::Vector3d start = s.start.corrected(window.correction.data()).homogeneous().normalized();
-  const Eigen::Vector3d end = s.end.corrected(window.correction.data()).homogeneous().normalized();
+  const Eigen::Vector3d start = s.start.corrected(window.correction.data()).normalized();
+  const Eigen::Vector3d end = s.end.corrected(window.correction.data()).normalized();
   // each end moves across the line by sigma: the plane turns about the other one
   const double sigma_ray = params.line_sigma_px * s.sigma_px / window.camera().meanFocal();
   return sigma_ray * std::hypot(start.cross(d_c).norm(), end.cross(d_c).norm()) /
@@ -35,8 +35,8 @@ double epipoleAngle(const SlidingWindow& window, const LineTrack& track) {
   constexpr double kLeastBaseline_m = 0.01;  // a shorter one has no direction: poses err by millimetres
   const LineSighting& newest = track.sightings.back();
   const Pose T_w_c = window.T_w_c(window.frame(newest.frame));
-  const Eigen::Vector3d start = newest.start.corrected(window.correction.data()).homogeneous();
-  const Eigen::Vector3d end = newest.end.corrected(window.correction.data()).homogeneous();
+  const Eigen::Vector3d start = newest.start.corrected(window.correction.data());
+  const Eigen::Vector3d end = newest.end.corrected(window.correction.data());
   const Eigen::Vector3d n_w = T_w_c.q * start.cross(end).normalized();
   double largest = 0;
   for (const LineSighting& s : track.sightings) {

@@ -80,10 +80,11 @@ int endsInCamera(const SlidingWindow& window, const LineTrack& track, const Line
   const PluckerLine line = lineFromBlock(track.line.data()).plucker();
   const Eigen::Vector3d d_c = T_c_w.q * line.d, p_c = T_c_w * (track.origin_w + line.nearestPoint());
   const PluckerLine line_c{p_c.cross(d_c), d_c};
-  const Eigen::Vector2d seen[2] = {s.start.corrected(window.correction.data()),
+  const Eigen::Vector3d seen[2] = {s.start.corrected(window.correction.data()),
                                    s.end.corrected(window.correction.data())};
   int in_front = 0;
-  for (int k = 0; k < 2; ++k) in_front += closestPointToRay(line_c, seen[k], ends_c[k]) && ends_c[k].z() >= 0.05;
+  for (int k = 0; k < 2; ++k)
+    in_front += closestPointToRay(line_c, seen[k], ends_c[k]) && window.camera().depth(ends_c[k], seen[k]) >= 0.05;
   return in_front;
 }
 
@@ -98,7 +99,9 @@ SeenMiddle middleOf(const SlidingWindow& window, const LineTrack& track) {
   endsInCamera(window, track, newest, ends_c);
   const Eigen::Vector3d middle_w = window.T_w_c(window.frame(newest.frame)) * (0.5 * (ends_c[0] + ends_c[1]));
   const Eigen::Vector3d d_w = lineFromBlock(track.line.data()).plucker().d.normalized();
-  return {(middle_w - track.origin_w).dot(d_w), std::max(0.5 * (ends_c[0].z() + ends_c[1].z()), 0.1)};
+  const double depth_m =
+      window.camera().wide() ? (0.5 * (ends_c[0] + ends_c[1])).norm() : 0.5 * (ends_c[0].z() + ends_c[1].z());
+  return {(middle_w - track.origin_w).dot(d_w), std::max(depth_m, 0.1)};
 }
 
 /// Start from all observation planes, abreast of `track.origin_w`.
@@ -106,8 +109,8 @@ bool startFromPlanes(const SlidingWindow& window, LineTrack& track) {
   std::vector<ObservationPlane> planes;
   for (const LineSighting& s : track.sightings) {
     const Pose T_w_c = window.T_w_c(window.frame(s.frame));
-    const Eigen::Vector3d start = s.start.corrected(window.correction.data()).homogeneous();
-    const Eigen::Vector3d end = s.end.corrected(window.correction.data()).homogeneous();
+    const Eigen::Vector3d start = s.start.corrected(window.correction.data());
+    const Eigen::Vector3d end = s.end.corrected(window.correction.data());
     const Eigen::Vector3d cross = start.cross(end);
     if (cross.norm() < 1e-6) return false;
     planes.push_back({T_w_c.q * cross.normalized(), T_w_c.p});

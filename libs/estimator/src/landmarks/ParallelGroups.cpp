@@ -38,8 +38,8 @@ struct Rays {
 
 Rays raysOf(const SlidingWindow& window, const LineSighting& s) {
   const Eigen::Quaterniond R_w_c = window.T_w_c(window.frame(s.frame)).q;
-  return {R_w_c * s.start.corrected(window.correction.data()).homogeneous().normalized(),
-          R_w_c * s.end.corrected(window.correction.data()).homogeneous().normalized()};
+  return {R_w_c * s.start.corrected(window.correction.data()).normalized(),
+          R_w_c * s.end.corrected(window.correction.data()).normalized()};
 }
 
 bool isMember(const LineTrack& track) { return track.triangulated && track.group != 0; }

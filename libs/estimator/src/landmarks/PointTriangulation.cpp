@@ -13,15 +13,14 @@ namespace {
 
 /// A sighting relative to the host: g = ray + lambda * baseline in the target camera (PointFactor).
 struct View {
-  Eigen::Vector3d ray, baseline;
-  Eigen::Vector2d seen;
+  Eigen::Vector3d ray, baseline, seen;
 };
 
 std::vector<View> viewsOf(const SlidingWindow& window, const PointTrack& track) {
   std::vector<View> views;
   const PointSighting& host = track.sightings.front();
   const Pose T_w_ci = window.T_w_c(window.frame(host.frame));
-  const Eigen::Vector3d ray = host.observation.corrected(window.correction.data()).homogeneous();
+  const Eigen::Vector3d ray = host.observation.corrected(window.correction.data());
   for (std::size_t i = 1; i < track.sightings.size(); ++i) {
     const PointSighting& s = track.sightings[i];
     const Pose T_cj_ci = window.T_w_c(window.frame(s.frame)).inverse() * T_w_ci;
@@ -33,7 +32,7 @@ std::vector<View> viewsOf(const SlidingWindow& window, const PointTrack& track) 
 double linearInverseDepth(const std::vector<View>& views) {
   double ab = 0, bb = 0;  // x_j x (ray + lambda baseline) = 0
   for (const View& v : views) {
-    const Eigen::Vector3d seen = v.seen.homogeneous().normalized();
+    const Eigen::Vector3d seen = v.seen.normalized();
     const Eigen::Vector3d a = seen.cross(v.ray), b = seen.cross(v.baseline);
     ab += a.dot(b);
     bb += b.squaredNorm();
@@ -46,16 +45,16 @@ struct Step {
   bool in_front = true;
 };
 
-Step evaluate(const std::vector<View>& views, double lambda) {
+Step evaluate(const Camera& camera, const std::vector<View>& views, double lambda) {
   Step step;
   for (const View& v : views) {
     const Eigen::Vector3d g = v.ray + lambda * v.baseline;
-    if (g.z() < 1e-3) {
+    if (camera.depth(g, v.seen) < 1e-3) {
       step.in_front = false;
       return step;
     }
-    const Eigen::Vector2d r = g.head<2>() / g.z() - v.seen;
-    const Eigen::Vector2d J = (v.baseline.head<2>() - g.head<2>() / g.z() * v.baseline.z()) / g.z();
+    const Eigen::Vector3d n = camera.rayTo(g), r = n - v.seen;
+    const Eigen::Vector3d J = (v.baseline - n * camera.depth(v.baseline, n)) / camera.depth(g, n);
     step.gradient += J.dot(r);
     step.information += J.squaredNorm();
     step.error += r.norm();
@@ -72,10 +71,10 @@ bool triangulatePoint(const SlidingWindow& window, const LandmarkParams& params,
   const std::vector<View> views = viewsOf(window, track);
   const double least = 1.0 / params.max_depth_m, most = 1.0 / params.min_depth_m;
   double lambda = std::clamp(linearInverseDepth(views), least, most);
-  Step step = evaluate(views, lambda);
+  Step step = evaluate(window.camera(), views, lambda);
   for (int i = 0; i < 5 && step.in_front && step.information > 0; ++i) {
     lambda = std::clamp(lambda - step.gradient / step.information, least, most);
-    step = evaluate(views, lambda);
+    step = evaluate(window.camera(), views, lambda);
   }
   const double focal = window.camera().meanFocal();
   if (!step.in_front || step.error * focal > params.point_max_error_px) return false;
@@ -85,7 +84,7 @@ bool triangulatePoint(const SlidingWindow& window, const LandmarkParams& params,
   const PointSighting& first = track.sightings.front();
   const Pose T_w_c = window.T_w_c(window.frame(first.frame));
   track.origin_w = T_w_c.p;
-  track.point << T_w_c.q * first.observation.corrected(window.correction.data()).homogeneous(), lambda;
+  track.point << T_w_c.q * first.observation.corrected(window.correction.data()), lambda;
   track.point.normalize();
   track.sigma_inverse_depth = sigma;
   track.triangulated = true;
@@ -99,24 +98,25 @@ void triangulatePoints(SlidingWindow& window, const LandmarkParams& params, doub
 }
 
 double reprojectionError(const SlidingWindow& window, const PointTrack& track) {
-  const PinholeRadtan camera = window.correctedCamera();
+  const Camera camera = window.correctedCamera();
   double sum = 0;
   for (const PointSighting& s : track.sightings) {
     const Pose T_w_c = window.T_w_c(window.frame(s.frame));
     const Eigen::Vector3d g =
         T_w_c.q.conjugate() * (track.point.head<3>() + track.point[3] * (track.origin_w - T_w_c.p));
-    if (g.z() < 1e-6) return std::numeric_limits<double>::infinity();
-    sum += (camera.toPixel(g.head<2>() / g.z()) - s.px).norm();
+    if (camera.depth(g, s.observation.ray) < 1e-6) return std::numeric_limits<double>::infinity();
+    sum += (camera.project(g) - s.px).norm();
   }
   return track.sightings.empty() ? 0 : sum / static_cast<double>(track.sightings.size());
 }
 
 void updatePointUncertainty(const SlidingWindow& window, double sigma_px, PointTrack& track) {
   if (track.sightings.size() < 2) return;
-  const Pose T_c_w = window.T_w_c(window.frame(track.sightings.front().frame)).inverse();
-  const double depth = (T_c_w * window.positionOf(track)).z();
+  const PointSighting& first = track.sightings.front();
+  const Pose T_c_w = window.T_w_c(window.frame(first.frame)).inverse();
+  const double depth = window.camera().depth(T_c_w * window.positionOf(track), first.observation.ray);
   if (depth <= 0) return;
-  const Step step = evaluate(viewsOf(window, track), 1 / depth);
+  const Step step = evaluate(window.camera(), viewsOf(window, track), 1 / depth);
   if (!step.in_front || step.information <= 0) return;
   track.sigma_inverse_depth =
       std::min(track.sigma_inverse_depth, sigma_px / window.camera().meanFocal() / std::sqrt(step.information));

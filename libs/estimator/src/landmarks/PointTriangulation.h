@@ -7,7 +7,7 @@
 namespace lintel {
 
 /// Inverse depth of a point from all its sightings with the window's poses: linear start, Gauss-Newton on the
-/// normalised plane. Sets point, origin_w, sigma_inverse_depth and triangulated; a point whose depth is not yet
+/// rays. Sets point, origin_w, sigma_inverse_depth and triangulated; a point whose depth is not yet
 /// known to point_max_relative_sigma waits: linearised at a wrong depth it would add information about translations
 /// that it does not have. Returns false when it waits, lies behind a camera or its error is too large.
 bool triangulatePoint(const SlidingWindow& window, const LandmarkParams& params, double sigma_px, PointTrack& track);

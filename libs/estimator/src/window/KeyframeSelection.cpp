@@ -22,7 +22,7 @@ bool secondNewestIsKeyframe(const SlidingWindow& window, const EstimatorParams& 
       if (s.frame == candidate.id) b = &s;
     }
     if (!a || !b) continue;
-    sum += (a->observation.position - b->observation.position).norm();
+    sum += (a->observation.ray - b->observation.ray).norm();
     ++shared;
   }
   if (shared < params.keyframe_min_tracked) return true;

@@ -10,7 +10,7 @@ namespace lintel {
 
 SlidingWindow::SlidingWindow(const Rig& rig) : extrinsics(toBlock(rig.T_b_c)), camera_(rig.camera) {}
 
-PinholeRadtan SlidingWindow::correctedCamera() const { return lintel::correctedCamera(camera_, correction.data()); }
+Camera SlidingWindow::correctedCamera() const { return lintel::correctedCamera(camera_, correction.data()); }
 
 bool SlidingWindow::contains(FrameId id) const {
   return std::any_of(frames.begin(), frames.end(), [id](const WindowFrame& f) { return f.id == id; });

@@ -28,10 +28,10 @@ PriorPart makePart(std::shared_ptr<const StateManifold> manifold, const Eigen::V
 
 }  // namespace
 
-EstimatorParams paramsFor(const PinholeRadtan& camera, const EstimatorParams& params) {
+EstimatorParams paramsFor(const Camera& camera, const EstimatorParams& params) {
   EstimatorParams used = scaledTo(camera, params);
   double& sigma = used.calibration.distortion_sigma;
-  if (camera.k1 == 0 && camera.k2 == 0 && camera.p1 == 0 && camera.p2 == 0) sigma = std::max(sigma, kUnknownDistortion);
+  if (!camera.wide() && camera.lens == Camera().lens) sigma = std::max(sigma, kUnknownDistortion);
   return used;
 }
 

@@ -71,8 +71,8 @@ Span sliding(double step_m, double noise_px) {
       PointObservation p;
       p.id = id;
       const double z = 3 + static_cast<double>(id % 7);
-      p.normalised = {(static_cast<double>(id % 8) - 4 + step_m * i) / z + noise(engine),
-                      (static_cast<double>(id / 8) - 2.5) / z + noise(engine)};
+      p.ray = {(static_cast<double>(id % 8) - 4 + step_m * i) / z + noise(engine),
+               (static_cast<double>(id / 8) - 2.5) / z + noise(engine), 1};
       frame.points.push_back(p);
     }
     span.frames.push_back(frame);

@@ -112,8 +112,8 @@ TEST(LineTriangulation, ContradictionsGiveNoUsableLine) {
   SlidingWindow window = seenFrom({at(0, 0, 0), at(0.3, 0, 0), at(0.6, 0, 0), at(0.9, 0, 0), at(1.2, 0, 0)}, kUpright);
   LineTrack& track = window.lines[1];
   for (std::size_t i = 0; i < track.sightings.size(); ++i)
-    for (NormalisedObservation* end : {&track.sightings[i].start, &track.sightings[i].end})
-      end->position.x() += (i % 2 == 0 ? 20.0 : -20.0) / 500;
+    for (RayObservation* end : {&track.sightings[i].start, &track.sightings[i].end})
+      end->ray.x() += (i % 2 == 0 ? 20.0 : -20.0) / 500;
   EXPECT_FALSE(triangulateLine(window, kParams, track) && !track.degenerate());
 }
 
@@ -129,9 +129,9 @@ TEST(LineError, IsTheMeanDistanceOfTheEndsInPixels) {
   LineTrack& track = window.lines[1];
   ASSERT_TRUE(triangulateLine(window, kParams, track));
   EXPECT_NEAR(lineError(window, track), 0, 1e-5);
-  track.sightings[1].start.position.x() += 6.0 / 500;  // an upright line: straight across
+  track.sightings[1].start.ray.x() += 6.0 / 500;  // an upright line: straight across
   EXPECT_NEAR(lineError(window, track), 6.0 / 2 / 4, 1e-4);
-  track.sightings[1].start.position.y() += 50.0 / 500;  // along it: nothing
+  track.sightings[1].start.ray.y() += 50.0 / 500;  // along it: nothing
   EXPECT_NEAR(lineError(window, track), 6.0 / 2 / 4, 1e-4);
   window.frames[2].pose = toBlock(at(0, 0, 9));  // past the line
   EXPECT_EQ(lineError(window, track), std::numeric_limits<double>::infinity());

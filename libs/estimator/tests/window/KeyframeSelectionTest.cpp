@@ -67,14 +67,14 @@ TEST(Rest, ImagesAndImuMustAgree) {
   EXPECT_FALSE(isAtRest(resting(0.005, 2 * params.initializer.static_accel_std), params));
   EXPECT_FALSE(isAtRest(threeFrames(0, 40), params)) << "no IMU";
   SlidingWindow moving = resting(0.005, 0.1);
-  for (auto& [id, track] : moving.points) track.sightings.back().observation.position.x() += 1.0 / 500;
+  for (auto& [id, track] : moving.points) track.sightings.back().observation.ray.x() += 1.0 / 500;
   EXPECT_FALSE(isAtRest(moving, params));
 }
 
 TEST(Rest, IsNotASlowUniformMotionFarFromAllPoints) {
   // 10 cm/s, 20 m away: 0.2 px in a tenth of a second, and the IMU shows nothing
   SlidingWindow slow = resting(0.005, 0.1);
-  for (auto& [id, track] : slow.points) track.sightings.back().observation.position.x() += 0.2 / 458;
+  for (auto& [id, track] : slow.points) track.sightings.back().observation.ray.x() += 0.2 / 458;
   EXPECT_TRUE(isAtRest(slow, {}));
   slow.frames.back().motion[kVelocityAt] = 0.1;
   EXPECT_FALSE(isAtRest(slow, {}));

@@ -54,8 +54,8 @@ TEST_F(OutlierRejectionTest, APointThatContradictsStartsAnewFromItsNewestSightin
 
 TEST_F(OutlierRejectionTest, ALineThatContradictsStartsAnewFromItsNewestSighting) {
   LineTrack& bad = window_.lines.at(2);
-  for (NormalisedObservation* end : {&bad.sightings[1].start, &bad.sightings[1].end})
-    end->position.x() += 5 * params_.landmarks.line_max_error_px / 500;
+  for (RayObservation* end : {&bad.sightings[1].start, &bad.sightings[1].end})
+    end->ray.x() += 5 * params_.landmarks.line_max_error_px / 500;
   EXPECT_EQ(rejectOutliers(window_, params_.landmarks), 1);
   EXPECT_FALSE(bad.triangulated);
   ASSERT_EQ(bad.sightings.size(), 1u);

@@ -32,7 +32,7 @@ TEST(SlidingWindow, AddFrameKeepsWhatTheFrameSaw) {
   PointObservation point;
   point.id = 5;
   point.px = {100, 200};
-  point.normalised = rig.camera.normalise(point.px);
+  point.ray = rig.camera.ray(point.px);
   tracks.points = {point};
   LineObservation line;
   line.id = 6;
@@ -46,7 +46,7 @@ TEST(SlidingWindow, AddFrameKeepsWhatTheFrameSaw) {
   ASSERT_EQ(window.points.at(5).sightings.size(), 1u);
   EXPECT_EQ(window.points.at(5).sightings[0].frame, 3u);
   EXPECT_EQ(window.points.at(5).sightings[0].px, point.px);
-  EXPECT_EQ(window.points.at(5).sightings[0].observation.position, point.normalised);
+  EXPECT_EQ(window.points.at(5).sightings[0].observation.ray, point.ray);
   ASSERT_EQ(window.lines.at(6).sightings.size(), 1u);
   EXPECT_EQ(window.lines.at(6).sightings[0].end_px, line.end_px);
   EXPECT_EQ(window.lines.at(6).sightings[0].sigma_px, 0.3);
@@ -94,13 +94,13 @@ TEST(SlidingWindow, BlocksAreFoundByTheirKeys) {
 TEST(SlidingWindow, TheCorrectionIsOnTopOfTheCalibration) {
   SlidingWindow window(eurocRig());
   window.correction << 1, 2, 3, 4, 0.01, 0.02, 0;
-  const PinholeRadtan a = window.camera(), b = window.correctedCamera();
+  const Camera a = window.camera(), b = window.correctedCamera();
   EXPECT_EQ(b.fx, a.fx + 1);
   EXPECT_EQ(b.fy, a.fy + 2);
   EXPECT_EQ(b.cx, a.cx + 3);
   EXPECT_EQ(b.cy, a.cy + 4);
-  EXPECT_EQ(b.k1, a.k1 + 0.01);
-  EXPECT_EQ(b.k2, a.k2 + 0.02);
+  EXPECT_EQ(b.lens[0], a.lens[0] + 0.01);
+  EXPECT_EQ(b.lens[1], a.lens[1] + 0.02);
 }
 
 TEST(SlidingWindow, ObservationsFollowALargeCorrection) {
@@ -108,9 +108,9 @@ TEST(SlidingWindow, ObservationsFollowALargeCorrection) {
   window.removeFrame(0, true);
   window.correction << 15, 10, -8, 5, 0.2, -0.05, 0;
   window.relinearise();
-  const PinholeRadtan camera = window.correctedCamera();
-  const auto expectAt = [&](const NormalisedObservation& o, const Eigen::Vector2d& px) {
-    EXPECT_LT((o.corrected(window.correction.data()) - camera.normalise(px)).norm(), 1e-9);
+  const Camera camera = window.correctedCamera();
+  const auto expectAt = [&](const RayObservation& o, const Eigen::Vector2d& px) {
+    EXPECT_LT((o.corrected(window.correction.data()) - camera.ray(px)).norm(), 1e-9);
   };
   const PointTrack& point = window.points.at(7);
   const LineTrack& line = window.lines.at(9);
@@ -126,29 +126,29 @@ TEST(SlidingWindow, ObservationsFollowALargeCorrection) {
 }
 
 TEST(SlidingWindow, WithinWhatIsNotLinearisedAnewTheFirstOrderIsGood) {
-  const PinholeRadtan camera = eurocRig().camera;
+  const Camera camera = eurocRig().camera;
   for (const Eigen::Vector2d& px : {Eigen::Vector2d(5, 5), Eigen::Vector2d(40, 60), Eigen::Vector2d(745, 475)})
     for (const double sign : {-1.0, 1.0}) {
       CorrectionBlock limit;  // the signs that add up
       limit << -0.22, -0.22, 0.22, 0.22, -0.00074, -0.00074, 0;
       limit *= sign;
-      const PinholeRadtan corrected = correctedCamera(camera, limit.data());
-      EXPECT_LT((corrected.toPixel(makeObservation(camera, px).corrected(limit.data())) - px).norm(), 0.05);
+      const Camera corrected = correctedCamera(camera, limit.data());
+      EXPECT_LT((corrected.project(makeObservation(camera, px).corrected(limit.data())) - px).norm(), 0.05);
       SlidingWindow window = sample();
-      const Eigen::Vector2d before = window.points.at(7).sightings[0].observation.position;
+      const Eigen::Vector3d before = window.points.at(7).sightings[0].observation.ray;
       window.correction = limit;
       window.relinearise();
-      EXPECT_EQ(window.points.at(7).sightings[0].observation.position, before) << "within the limits";
+      EXPECT_EQ(window.points.at(7).sightings[0].observation.ray, before) << "within the limits";
       window.correction *= 1.1;
       window.relinearise();
-      EXPECT_NE(window.points.at(7).sightings[0].observation.position, before) << "beyond them";
+      EXPECT_NE(window.points.at(7).sightings[0].observation.ray, before) << "beyond them";
     }
 }
 
 TEST(MakeObservation, CorrectionJacobianIsTheNumericOne) {
-  const PinholeRadtan camera = eurocRig().camera;
+  const Camera camera = eurocRig().camera;
   for (const Eigen::Vector2d& px : {Eigen::Vector2d(370, 250), Eigen::Vector2d(40, 60), Eigen::Vector2d(700, 430)}) {
-    const NormalisedObservation o = makeObservation(camera, px);
+    const RayObservation o = makeObservation(camera, px);
     const auto normalisedWith = [&](const CorrectionBlock& c) -> Eigen::Vector2d {
       return correctedCamera(camera, c.data()).normalise(px);
     };
@@ -163,7 +163,7 @@ TEST(MakeObservation, CorrectionJacobianIsTheNumericOne) {
     EXPECT_EQ(o.correction_jacobian.col(kTimeOffsetAt).norm(), 0);  // moves the pose instead
     CorrectionBlock small;
     small << 0.5, -0.5, 0.3, 0.2, 1e-3, -1e-3, 0;
-    EXPECT_LT((o.corrected(small.data()) - normalisedWith(small)).norm(), 1e-4);
+    EXPECT_LT((o.corrected(small.data()).head<2>() - normalisedWith(small)).norm(), 1e-4);
   }
 }
 

@@ -64,10 +64,10 @@ TEST(CalibrationPriors, WhatIsNotRefinedIsHeldWithoutARobustLoss) {
 }
 
 TEST(ParamsFor, ADistortionOfZeroIsNotKnown) {
-  PinholeRadtan camera = eurocRig().camera;
+  Camera camera = eurocRig().camera;
   EstimatorParams params;
   EXPECT_EQ(paramsFor(camera, params).calibration.distortion_sigma, params.calibration.distortion_sigma);
-  camera.k1 = camera.k2 = camera.p1 = camera.p2 = 0;
+  camera.lens = {};
   EXPECT_EQ(paramsFor(camera, params).calibration.distortion_sigma, 0.1);
   params.calibration.distortion_sigma = 0.3;
   EXPECT_EQ(paramsFor(camera, params).calibration.distortion_sigma, 0.3);

@@ -4,7 +4,7 @@
 #include <string>
 #include <type_traits>
 
-#include "lintel/geometry/PinholeRadtan.h"
+#include "lintel/geometry/Camera.h"
 
 namespace lintel {
 
@@ -38,7 +38,7 @@ constexpr double kReferenceFocal_px = 458;
 
 /// How many pixels of `camera` see the angle that one pixel sees at the reference focal length. In steps of a quarter,
 /// so that a new calibration of the same camera does not change every limit a little; at least a quarter.
-double pixelScale(const PinholeRadtan& camera);
+double pixelScale(const Camera& camera);
 
 /// What is allowed, in words: "4 to 100", "20 to 10000 at 458 px", "flow, descriptor", "true, false".
 std::string allowedText(const Range& range);
@@ -99,7 +99,7 @@ class PixelScaling {
 
 /// `params` with its ReferencePixels in pixels of `camera`.
 template <class Params>
-Params scaledTo(const PinholeRadtan& camera, Params params) {
+Params scaledTo(const Camera& camera, Params params) {
   params.fields(PixelScaling(pixelScale(camera)));
   return params;
 }

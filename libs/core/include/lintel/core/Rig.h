@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "lintel/geometry/PinholeRadtan.h"
+#include "lintel/geometry/Camera.h"
 #include "lintel/geometry/Pose.h"
 
 namespace lintel {
@@ -16,7 +16,7 @@ struct ImuNoise {
 
 /// Calibration of the sensors that Lintel uses: one camera and one IMU. The body frame is the IMU's.
 struct Rig {
-  PinholeRadtan camera;
+  Camera camera;
   Pose T_b_c;  ///< camera in the body (IMU) frame
   double camera_rate_hz = 20;
   ImuNoise imu_noise;

@@ -23,7 +23,7 @@ struct CalibrationSigma {
 
 /// Calibration as refined so far.
 struct CalibrationEstimate {
-  PinholeRadtan camera;
+  Camera camera;
   Pose T_b_c;
   double time_offset_s = 0;               ///< an image with stamp t shows the world at t + offset
   std::optional<CalibrationSigma> sigma;  ///< of the last window; empty while there is none

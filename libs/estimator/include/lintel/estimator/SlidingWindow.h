@@ -48,7 +48,7 @@ struct WindowFrame {
 
 struct PointSighting {
   FrameId frame = 0;
-  NormalisedObservation observation;
+  RayObservation observation;
   Eigen::Vector2d px = Eigen::Vector2d::Zero();
 };
 
@@ -129,8 +129,8 @@ class SlidingWindow {
   CorrectionBlock correction = CorrectionBlock::Zero();
   std::vector<WindowPrior> priors;  ///< from marginalisation and from initialisation
 
-  const PinholeRadtan& camera() const { return camera_; }  ///< as calibrated; `correction` is on top
-  PinholeRadtan correctedCamera() const;
+  const Camera& camera() const { return camera_; }  ///< as calibrated; `correction` is on top
+  Camera correctedCamera() const;
   Pose T_b_c() const { return poseFromBlock(extrinsics.data()); }
 
   bool contains(FrameId id) const;
@@ -154,7 +154,7 @@ class SlidingWindow {
   Eigen::Vector3d positionOf(const PointTrack& track) const;
 
  private:
-  PinholeRadtan camera_;
+  Camera camera_;
   CorrectionBlock linearised_at_ = CorrectionBlock::Zero();
 };
 

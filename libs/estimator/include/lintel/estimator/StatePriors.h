@@ -19,7 +19,7 @@ std::unique_ptr<PriorFactor> makeGaugePrior(const PoseBlock& pose);
 
 /// The params for this camera: lengths in its pixels; a distortion that is zero throughout is taken as not known, not
 /// as measured.
-EstimatorParams paramsFor(const PinholeRadtan& camera, const EstimatorParams& params);
+EstimatorParams paramsFor(const Camera& camera, const EstimatorParams& params);
 
 /// What belongs together in a calibration is right or wrong together, so each part is a prior of its own. A part that
 /// is refined takes a robust loss (CalibrationParams::loss_width); one that is not is held and takes none.

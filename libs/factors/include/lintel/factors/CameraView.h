@@ -8,7 +8,7 @@
 
 namespace lintel {
 
-constexpr int kCameraTangent = 6, kIntrinsicsSize = 6;
+constexpr int kCameraTangent = 6;
 
 /// Where the camera was when an image was taken, and how that hangs on the states: what all residuals of an image have
 /// in common. Tangent of the camera's pose: p_w_c += dp, R_w_c <- R_w_c Exp(dtheta).

@@ -5,27 +5,41 @@
 #include <utility>
 
 #include "lintel/factors/StateBlocks.h"
-#include "lintel/geometry/PinholeRadtan.h"
+#include "lintel/geometry/Camera.h"
 
 namespace lintel {
 
-/// An image observation on the normalised plane and how it moves with the camera correction, about one correction.
-struct NormalisedObservation {
-  Eigen::Vector2d position = Eigen::Vector2d::Zero();  ///< (x/z, y/z)
-  ObservationJacobian correction_jacobian = ObservationJacobian::Zero();
+/// The ray of an image observation (Camera.h) and how it moves with the camera correction, about one correction.
+struct RayObservation {
+  using Row = Eigen::Matrix<double, 1, kCorrectionSize>;
+  Eigen::Vector3d ray = Eigen::Vector3d::UnitZ();
+  ObservationJacobian correction_jacobian = ObservationJacobian::Zero();  ///< of x and y of the ray
+  Row z_jacobian = Row::Zero();                                           ///< of z: of wide lenses only
   CorrectionBlock linearised_at = CorrectionBlock::Zero();
+  bool wide = false;
 
-  /// The observation under a correction, to first order.
-  Eigen::Vector2d corrected(const double* correction) const {
-    return position + correction_jacobian * (Eigen::Map<const CorrectionBlock>(correction) - linearised_at);
+  /// The ray under a correction, to first order.
+  Eigen::Vector3d corrected(const double* correction) const {
+    const CorrectionBlock change = Eigen::Map<const CorrectionBlock>(correction) - linearised_at;
+    Eigen::Vector3d moved = ray;
+    moved.head<2>() += correction_jacobian * change;
+    if (wide) moved.z() += z_jacobian.dot(change);
+    return moved;
+  }
+
+  /// d (v . ray) / d intrinsics.
+  Eigen::Matrix<double, 1, kIntrinsicsSize> alongJacobian(const Eigen::Vector3d& v) const {
+    Eigen::Matrix<double, 1, kIntrinsicsSize> J =
+        v.head<2>().transpose() * correction_jacobian.leftCols<kIntrinsicsSize>();
+    if (wide) J += v.z() * z_jacobian.leftCols<kIntrinsicsSize>();
+    return J;
   }
 };
 
 /// An observed end point of a line, and how many pixels a distance of 1 across the line is there. That scale moves with
-/// the camera correction, too: with a constant one, distances on the normalised plane would be the smaller the longer
-/// the focal length, and every line would pull at it.
-struct LineEnd : NormalisedObservation {
-  using Row = Eigen::Matrix<double, 1, kCorrectionSize>;
+/// the camera correction, too: with a constant one, distances of rays would be the smaller the longer the focal length,
+/// and every line would pull at it.
+struct LineEnd : RayObservation {
   double linearised_scale_px = 1;        ///< at `linearised_at`
   Row log_scale_jacobian = Row::Zero();  ///< d log scale / d correction
 
@@ -37,11 +51,11 @@ struct LineEnd : NormalisedObservation {
 };
 
 /// How an observed pixel depends on the camera correction (intrinsics, by the camera model), about `correction`.
-NormalisedObservation makeObservation(const PinholeRadtan& calibrated, const Eigen::Vector2d& px,
-                                      const CorrectionBlock& correction = CorrectionBlock::Zero());
+RayObservation makeObservation(const Camera& calibrated, const Eigen::Vector2d& px,
+                               const CorrectionBlock& correction = CorrectionBlock::Zero());
 
 /// The two end points of an observed line [px]; their scales are across the line through both.
-std::pair<LineEnd, LineEnd> makeLineEnds(const PinholeRadtan& calibrated, const Eigen::Vector2d& start_px,
+std::pair<LineEnd, LineEnd> makeLineEnds(const Camera& calibrated, const Eigen::Vector2d& start_px,
                                          const Eigen::Vector2d& end_px,
                                          const CorrectionBlock& correction = CorrectionBlock::Zero());
 

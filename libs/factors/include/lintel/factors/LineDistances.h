@@ -6,22 +6,25 @@
 
 namespace lintel {
 
-/// The line residual [Lim2021, Bartoli2005] on the normalised plane, whatever the parameters of the line: distances of
-/// two observed end points x to the projected infinite line l (its moment about the camera, in the camera's axes),
+/// The line residual [Lim2021, Bartoli2005], whatever the parameters of the line: distances of the rays x of two
+/// observed end points from the plane through camera and line, with its normal l (the line's moment about the camera,
+/// in the camera's axes). Of lenses that are not wide that is the distance to the projected line on the plane z = 1,
 ///   r_k = weight x_k^T l / |l_xy|,   d r_k / d l = weight / |l_xy| (x_k - distance (l_x, l_y, 0) / |l_xy|)^T
+/// and of wide ones, whose rays have unit length, the sine of the distance from the great circle: |l| for |l_xy|, and l
+/// for (l_x, l_y, 0).
 struct LineDistances {
   Eigen::Vector2d residual;
   Eigen::RowVector3d d_l[2];  ///< d residual[k] / d l
-  Eigen::Vector2d normal;     ///< of the projected line, unit
+  Eigen::Vector3d normal;     ///< of the projected line or of the great circle, unit
 
-  /// `ends`: both (x/z, y/z, 1).
-  LineDistances(const Eigen::Vector3d ends[2], const Eigen::Vector3d& l, double weight) {
-    const double size = std::max(l.head<2>().norm(), 1e-12);
-    normal = l.head<2>() / size;
+  LineDistances(const Eigen::Vector3d ends[2], const Eigen::Vector3d& l, double weight, bool wide) {
+    const double size = std::max(wide ? l.norm() : l.head<2>().norm(), 1e-12);
+    normal = l / size;
+    if (!wide) normal.z() = 0;
     for (int k = 0; k < 2; ++k) {
       const double distance = ends[k].dot(l) / size;
       residual[k] = weight * distance;
-      d_l[k] = weight / size * (ends[k].transpose() - distance * Eigen::RowVector3d(normal.x(), normal.y(), 0));
+      d_l[k] = weight / size * (ends[k] - distance * normal).transpose();
     }
   }
 };

@@ -13,9 +13,9 @@ namespace lintel {
 ///   l = n_c = R_c_w (n + (origin_w - p_w_c) x d),    r_k = s_k / sigma_px x_k^T l / sqrt(l_1^2 + l_2^2),  k = start,
 ///   end
 ///
-/// with x_k on the normalised plane and s_k the pixels that a distance of 1 is there (LineEnd). Blocks: pose (T_w_b),
-/// extrinsics (T_b_c), correction, line. A constant origin near the line keeps phi well conditioned far from the
-/// world's origin.
+/// with the rays x_k and s_k the pixels that a distance of 1 is there (LineEnd); of wide lenses |l| for the root.
+/// Blocks: pose (T_w_b), extrinsics (T_b_c), correction, line. A constant origin near the line keeps phi well
+/// conditioned far from the world's origin.
 class LineFactor final : public ImageFactor<LineTarget> {
  public:
   LineFactor(const LineEnd& start, const LineEnd& end, const FrameMotion& motion, const Eigen::Vector3d& origin_w,

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "lintel/factors/ImageFactor.h"
-#include "lintel/geometry/PinholeRadtan.h"
+#include "lintel/geometry/Camera.h"
 
 namespace lintel {
 
@@ -15,7 +15,7 @@ namespace lintel {
 /// are regular: w = 0. Blocks: pose (T_w_b), extrinsics (T_b_c), correction, point.
 class PointFactor final : public ImageFactor<PointTarget> {
  public:
-  PointFactor(const Eigen::Vector2d& px, const PinholeRadtan& camera, const FrameMotion& motion,
+  PointFactor(const Eigen::Vector2d& px, const Camera& camera, const FrameMotion& motion,
               const Eigen::Vector3d& origin_w, double sigma_px)
       : ImageFactor(motion), px_(px), camera_(camera), origin_w_(origin_w), weight_(1 / sigma_px) {}
   void linearise(const CameraView& view, const double* correction, const double* point, bool jacobians,
@@ -23,7 +23,7 @@ class PointFactor final : public ImageFactor<PointTarget> {
 
  private:
   Eigen::Vector2d px_;
-  PinholeRadtan camera_;
+  Camera camera_;
   Eigen::Vector3d origin_w_;
   double weight_;
 };

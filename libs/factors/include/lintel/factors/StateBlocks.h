@@ -3,7 +3,7 @@
 
 #include <Eigen/Core>
 
-#include "lintel/geometry/PinholeRadtan.h"
+#include "lintel/geometry/Camera.h"
 #include "lintel/geometry/PluckerLine.h"
 #include "lintel/geometry/Pose.h"
 #include "lintel/inertial/Preintegration.h"
@@ -46,7 +46,7 @@ Eigen::Vector3d velocityOf(const double* motion);
 ImuBias biasOf(const double* motion);
 
 /// The calibrated camera with a correction block added.
-PinholeRadtan correctedCamera(PinholeRadtan camera, const double* correction);
+Camera correctedCamera(Camera camera, const double* correction);
 
 /// Maps a right perturbation to quaternion coefficients: dq (x y z w) = rotationPlus(q) * dtheta.
 Eigen::Matrix<double, 4, 3> rotationPlus(const Eigen::Quaterniond& q);

@@ -15,14 +15,13 @@ namespace lintel {
 /// the angle between plane and direction. Blocks: pose (T_w_b), extrinsics (T_b_c), correction, direction.
 class VanishingFactor final : public ImageFactor<DirectionTarget> {
  public:
-  VanishingFactor(const NormalisedObservation& start, const NormalisedObservation& end, const FrameMotion& motion,
-                  double weight)
+  VanishingFactor(const RayObservation& start, const RayObservation& end, const FrameMotion& motion, double weight)
       : ImageFactor(motion), start_(start), end_(end), weight_(weight) {}
   void linearise(const CameraView& view, const double* correction, const double* direction, bool jacobians,
                  DirectionLinearisation& out) const override;
 
  private:
-  NormalisedObservation start_, end_;
+  RayObservation start_, end_;
   double weight_;
 };
 

@@ -40,6 +40,6 @@ OrthonormalLine toOrthonormal(const PluckerLine& line);
 
 /// The point of a line (camera frame) that the ray `normalised` (x, y, 1) comes nearest to.
 /// Returns false when line and ray are parallel to within 1e-9.
-bool closestPointToRay(const PluckerLine& line_c, const Eigen::Vector2d& normalised, Eigen::Vector3d& p_c);
+bool closestPointToRay(const PluckerLine& line_c, const Eigen::Vector3d& ray_c, Eigen::Vector3d& p_c);
 
 }  // namespace lintel

@@ -12,11 +12,11 @@ namespace lintel {
 
 /// A camera of a calibration file.
 struct CameraCalibration {
-  std::string label;                    ///< cam0, …; empty where the file has no name for it
-  std::string topic;                    ///< ROS topic; empty where the file names none
-  std::function<PinholeRadtan()> make;  ///< throws RecordingError when the model is not supported
-  std::optional<Pose> T_b_c;            ///< canonical; absent in files of a camera alone
-  double time_shift_s = 0;              ///< stamp on the IMU's clock = stamp of the image + this
+  std::string label;             ///< cam0, …; empty where the file has no name for it
+  std::string topic;             ///< ROS topic; empty where the file names none
+  std::function<Camera()> make;  ///< throws RecordingError when the model is not supported
+  std::optional<Pose> T_b_c;     ///< canonical; absent in files of a camera alone
+  double time_shift_s = 0;       ///< stamp on the IMU's clock = stamp of the image + this
   std::optional<double> rate_hz;
 };
 

@@ -31,7 +31,7 @@ struct CameraSensorParams {
 /// Takes pictures along a trajectory. Each depends on its time only: any number of threads gives the same bytes.
 class CameraSensor {
  public:
-  CameraSensor(const ImageRenderer& renderer, const PinholeRadtan& camera, const Pose& T_b_c,
+  CameraSensor(const ImageRenderer& renderer, const Camera& camera, const Pose& T_b_c,
                const CameraSensorParams& params);
 
   /// The picture at trajectory time `t_s`.
@@ -42,7 +42,7 @@ class CameraSensor {
   double gain(double t_s) const;
 
   const ImageRenderer& renderer_;
-  PinholeRadtan camera_;
+  Camera camera_;
   Pose T_b_c_;
   CameraSensorParams params_;
   std::vector<float> gaussians_, vignette_;

@@ -4,7 +4,7 @@
 #include <memory>
 #include <vector>
 
-#include "lintel/geometry/PinholeRadtan.h"
+#include "lintel/geometry/Camera.h"
 #include "lintel/geometry/Pose.h"
 #include "lintel/simulation/Scene.h"
 
@@ -22,7 +22,7 @@ struct EdgeSampling {
 /// Deterministic; may be used from several threads at once.
 class ImageRenderer {
  public:
-  ImageRenderer(const Scene& scene, const PinholeRadtan& camera);
+  ImageRenderer(const Scene& scene, const Camera& camera);
   ~ImageRenderer();
 
   Radiance render(const Pose& T_w_c, const EdgeSampling& edges = {}) const;

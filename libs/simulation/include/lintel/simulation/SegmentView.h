@@ -3,25 +3,25 @@
 
 #include <optional>
 
-#include "lintel/geometry/PinholeRadtan.h"
+#include "lintel/geometry/Camera.h"
 #include "lintel/geometry/Segment.h"
 
 namespace lintel {
 
-/// Whether a camera sees points: in front of it, inside its image, and within the radius for which its distortion
+/// Whether a camera sees points: far enough away, inside its image, and within the radius for which its distortion
 /// holds.
 class ViewTest {
  public:
-  explicit ViewTest(const PinholeRadtan& camera, double border_px = 0, double min_depth_m = 0.2);
+  explicit ViewTest(const Camera& camera, double border_px = 0, double min_depth_m = 0.2);
 
   /// The pixel of a point in the camera frame [m]; empty where it is not seen.
   std::optional<Eigen::Vector2d> project(const Eigen::Vector3d& p_c) const;
 
-  const PinholeRadtan& camera() const { return camera_; }
+  const Camera& camera() const { return camera_; }
 
  private:
-  PinholeRadtan camera_;
-  double border_px_, min_depth_m_, max_radius_;
+  Camera camera_;
+  double border_px_, min_depth_m_, least_cosine_;  ///< the last of the largest angle to the optical axis
 };
 
 /// The part of a segment that is inside the image: its ends in the camera frame [m] and in pixels, in the order of the

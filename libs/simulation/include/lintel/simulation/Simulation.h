@@ -29,12 +29,13 @@ struct SimulationParams {
   double duration_s = 0;  ///< from the first image to after the last; 0: 30 s, or the whole trajectory file
   std::uint64_t seed = 1;
   int threads = 1;
-  ImuSimulatorParams imu;          ///< its seed is derived from `seed`
-  CameraSensorParams camera;       ///< its seed is derived from `seed`
-  double camera_delay_s = 0;       ///< images show what was so much before their stamps [s]
-  double calibration_error = 0;    ///< sensor.yaml differs from the true camera; 1: as a fair calibration does
-  double drop_images_every_s = 0;  ///< a gap of 0.3 s without images so often [s]; 0 = never
-  double drop_imu_every_s = 0;     ///< a gap of 0.1 s without IMU so often [s]; 0 = never
+  std::string lens = "radial-tangential";  ///< none, or a name of LensNames.h
+  ImuSimulatorParams imu;                  ///< its seed is derived from `seed`
+  CameraSensorParams camera;               ///< its seed is derived from `seed`
+  double camera_delay_s = 0;               ///< images show what was so much before their stamps [s]
+  double calibration_error = 0;            ///< sensor.yaml differs from the true camera; 1: as a fair calibration does
+  double drop_images_every_s = 0;          ///< a gap of 0.3 s without images so often [s]; 0 = never
+  double drop_imu_every_s = 0;             ///< a gap of 0.1 s without IMU so often [s]; 0 = never
 };
 
 struct SimulationSummary {
