@@ -30,13 +30,8 @@ namespace {
 constexpr int kTrialFrames = 30;  // window frames that a start is on trial: as long as the window reaches, and again
 
 /// When a solve may end, see SolveLimits::min_move. After it mostly landmarks move, one by one: waiting for them took a
-/// quarter of the solver's time and made the trajectory a few per cent better on average (doc/results.md). Not where
-/// degenerate lines are used as they are, or not found (few are by the epipole): with `use` two of ten starts of `hall`
-/// failed. With a first damping of 1e-8 none did: the damping of the first step may hide how far weakly seen states
-/// still have to go.
-double settledMove(const DegeneracyParams& degeneracy) {
-  return degeneracy.lines == "use" || degeneracy.test == "epipole" ? 0 : 0.3;
-}
+/// quarter of the solver's time and made the trajectory a few per cent better on average.
+constexpr double kSettledMove = 0.3;
 
 ImuNoise scaled(const ImuNoise& noise, const FactorParams& p) {
   return {noise.gyro_noise * p.gyro_noise_scale, noise.gyro_walk * p.gyro_walk_scale,
@@ -222,7 +217,7 @@ void Estimator::Impl::solve(WindowUpdate& update) {
   if (params_.degeneracy.lines == "constrain") groupParallelLines(window_, params_);
   WindowFactors factors(window_, params_.factors);
   factors.addAll(params_, rig_.T_b_c);
-  const SolveLimits limits{params_.max_iterations, settledMove(params_.degeneracy)};
+  const SolveLimits limits{params_.max_iterations, kSettledMove};
   update.iterations = solveWindow(window_, factors.factors(), params_.calibration, limits).iterations;
   rejectOutliers(window_, params_.landmarks);
   for (auto& [id, track] : window_.lines)

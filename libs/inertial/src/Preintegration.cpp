@@ -73,6 +73,8 @@ void Preintegration::integrate(const ImuSample& s0, const ImuSample& s1) {
   const double accel = s1.bridged ? kBridgedAccel : noise_.accel_noise;
   variance << Eigen::Vector3d::Constant(gyro * gyro / dt), Eigen::Vector3d::Constant(accel * accel / dt);
   covariance_ = A * covariance_ * A.transpose() + B * variance.asDiagonal() * B.transpose();
+  // White noise moves the position within a step on its own: of accel^2 dt^3 / 3 the term in B holds three quarters.
+  covariance_.block<3, 3>(kPosition, kPosition).diagonal().array() += accel * accel * dt * dt2 / 12;
 
   delta_p_ += delta_v_ * dt + 0.5 * a * dt2;
   delta_v_ += a * dt;

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <Eigen/Cholesky>
 #include <cmath>
 
 #include "lintel/geometry/Frames.h"
@@ -109,6 +110,19 @@ TEST(Preintegration, CovarianceOfPureNoiseIsThatOfARandomWalk) {
   EXPECT_NEAR(p.covariance()(0, 0), noise.gyro_noise * noise.gyro_noise * t, 1e-12);
   EXPECT_NEAR(p.covariance()(3, 3), noise.accel_noise * noise.accel_noise * t, 1e-10);
   EXPECT_NEAR(p.covariance()(6, 6), noise.accel_noise * noise.accel_noise * t * t * t / 3, 1e-8);
+}
+
+TEST(Preintegration, OneStepHoldsTheWholeWhiteNoise) {
+  // the integrals of white noise over dt: s^2 dt, s^2 dt^2 / 2, s^2 dt^3 / 3, of full rank
+  ImuNoise noise;
+  Preintegration p({}, noise);
+  p.append(ImuBatch{{kStart_ns, {0, 0, 0}, {0, 0, 0}}, {kStart_ns + kStep_ns, {0, 0, 0}, {0, 0, 0}}});
+  const double variance = noise.accel_noise * noise.accel_noise, dt = 0.005;
+  const auto& C = p.covariance();
+  EXPECT_NEAR(C(Preintegration::kVelocity, Preintegration::kVelocity) / (variance * dt), 1, 1e-9);
+  EXPECT_NEAR(C(Preintegration::kVelocity, Preintegration::kPosition) / (variance * dt * dt / 2), 1, 1e-9);
+  EXPECT_NEAR(C(Preintegration::kPosition, Preintegration::kPosition) / (variance * dt * dt * dt / 3), 1, 1e-9);
+  EXPECT_EQ(C.llt().info(), Eigen::Success);
 }
 
 TEST(Preintegration, CovariancePropagationMatchesNumericNoiseJacobians) {

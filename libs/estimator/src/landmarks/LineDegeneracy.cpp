@@ -32,19 +32,17 @@ double planeSigma(const SlidingWindow& window, const FactorParams& params, const
 }
 
 double epipoleAngle(const SlidingWindow& window, const LineTrack& track) {
-  constexpr double kLeastBaseline_m = 0.01;  // a shorter one has no direction: poses err by millimetres
   const LineSighting& newest = track.sightings.back();
   const Pose T_w_c = window.T_w_c(window.frame(newest.frame));
-  const Eigen::Vector3d start = newest.start.corrected(window.correction.data());
-  const Eigen::Vector3d end = newest.end.corrected(window.correction.data());
-  const Eigen::Vector3d n_w = T_w_c.q * start.cross(end).normalized();
-  double largest = 0;
+  Eigen::Vector3d baseline_w = Eigen::Vector3d::Zero();
   for (const LineSighting& s : track.sightings) {
-    const Eigen::Vector3d baseline = window.T_w_c(window.frame(s.frame)).p - T_w_c.p;
-    if (baseline.norm() < kLeastBaseline_m) continue;
-    largest = std::max(largest, std::asin(std::min(1.0, std::abs(n_w.dot(baseline.normalized())))));
+    const Eigen::Vector3d way_w = window.T_w_c(window.frame(s.frame)).p - T_w_c.p;
+    if (way_w.norm() > baseline_w.norm()) baseline_w = way_w;
   }
-  return largest;
+  const Eigen::Vector3d n_c =
+      newest.start.corrected(window.correction.data()).cross(newest.end.corrected(window.correction.data()));
+  const double sine = (T_w_c.q * n_c).dot(baseline_w) / std::max(n_c.norm() * baseline_w.norm(), 1e-12);
+  return std::asin(std::min(1.0, std::abs(sine)));
 }
 
 LineVerdict judgeLine(const SlidingWindow& window, const DegeneracyParams& params, const LineTrack& track,

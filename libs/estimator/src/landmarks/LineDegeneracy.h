@@ -23,8 +23,9 @@ LineUncertainty uncertaintyOf(const OrthonormalLine& line, const Eigen::Matrix4d
 double planeSigma(const SlidingWindow& window, const FactorParams& params, const LineSighting& sighting,
                   const Eigen::Vector3d& d_w);
 
-/// The largest angle between the line's newest observation plane and the way to any camera that saw it [rad]: zero when
-/// the line passes the epipoles of all of them ([Lim2021] eq. epipole). Zero too when the cameras are in one place.
+/// The epipole test of two views ([Lim2021] eq. epipole): the newest camera and, of those that saw the line, the one
+/// farthest from it. The angle between the line's plane in the newest one and the way between the two [rad]: zero when
+/// the line's image passes the epipole, and when all cameras are in one place.
 double epipoleAngle(const SlidingWindow& window, const LineTrack& track);
 
 /// Whether a triangulated line whose sigmas are up to date is degenerate, and why; `depth_m`: of its middle in the

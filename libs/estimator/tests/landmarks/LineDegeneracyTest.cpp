@@ -105,5 +105,58 @@ TEST(LineUncertainty, HalfTheBaselineDoublesTheSigma) {
   EXPECT_NEAR(sigma(0.1) / sigma(0.2), 2, 0.05);
 }
 
+/// A line seen from some cameras, without its triangulation.
+SlidingWindow seen(const std::vector<Pose>& poses, const Segment3& segment_w) {
+  SlidingWindow window = windowAt(poses);
+  for (FrameId k = 0; k < poses.size(); ++k) seeLine(window, 1, k, segment_w);
+  return window;
+}
+
+TEST(EpipoleAngle, IsZeroForALineThroughTheEpipole) {
+  const SlidingWindow ahead = seen({at(0, 0, 0), at(0, 0, 0.5)}, {{0.7, 1, 3}, {0.7, 1, 9}});  // a rail
+  EXPECT_NEAR(epipoleAngle(ahead, ahead.lines.at(1)), 0, 1e-6);
+  const SlidingWindow strut = seen({at(0, 0, 0), at(0, 0, 0.5)}, {{0.4, 0.4, 3}, {0.8, 0.8, 4}});  // not parallel to it
+  EXPECT_NEAR(epipoleAngle(strut, strut.lines.at(1)), 0, 1e-6);
+}
+
+TEST(EpipoleAngle, IsTheAngleBetweenPlaneAndMotion) {
+  // moving along x below a line in the plane z = 4 that is turned by 30 degrees against x
+  const Segment3 segment{{-0.5 * std::cos(M_PI / 6), -0.5 * std::sin(M_PI / 6), 4},
+                         {0.5 * std::cos(M_PI / 6), 0.5 * std::sin(M_PI / 6), 4}};
+  const SlidingWindow window = seen({at(-1, 0, 0), at(-0.5, 0, 0), at(0, 0, 0)}, segment);
+  EXPECT_NEAR(epipoleAngle(window, window.lines.at(1)), M_PI / 6, 1e-6);
+}
+
+TEST(EpipoleAngle, TheLongestWayCountsNotTheNoiseOfShortOnes) {
+  // the second camera is a centimetre beside the way
+  const SlidingWindow window = seen({at(0, 0, 0), at(0, 0.01, 0.98), at(0, 0, 1)}, {{0.7, 1, 3}, {0.7, 1, 9}});
+  EXPECT_NEAR(epipoleAngle(window, window.lines.at(1)), 0, 1e-6);
+}
+
+TEST(JudgeLine, EachTestHasItsOwnLimits) {
+  const SlidingWindow rail = seen({at(0, 0, 0), at(0, 0, 0.5)}, {{0.7, 1, 3}, {0.7, 1, 9}});
+  const SlidingWindow upright = seen({at(0, 0, 0), at(0.5, 0, 0)}, {{0, -1, 4}, {0, 1, 4}});
+  DegeneracyParams params;
+  LineTrack known = rail.lines.at(1), crosswise = upright.lines.at(1);
+  known.sigma_direction_rad = crosswise.sigma_direction_rad = 0.5 * params.max_sigma_direction_rad;
+  known.sigma_distance_m = crosswise.sigma_distance_m = 0.5 * params.max_sigma_distance * 4;
+  for (const std::string test : {"observability", "epipole", "both"}) {
+    params.test = test;
+    EXPECT_EQ(judgeLine(rail, params, known, 4),
+              test == "observability" ? LineVerdict::kGood : LineVerdict::kThroughEpipole)
+        << test;
+    EXPECT_EQ(judgeLine(upright, params, crosswise, 4), LineVerdict::kGood) << test;
+  }
+  LineTrack turned = crosswise, deep = crosswise;
+  turned.sigma_direction_rad = 2 * params.max_sigma_direction_rad;
+  deep.sigma_distance_m = 2 * params.max_sigma_distance * 4;
+  for (const std::string test : {"observability", "epipole", "both"}) {
+    params.test = test;
+    const bool by_sigma = test != "epipole";
+    EXPECT_EQ(judgeLine(upright, params, turned, 4), by_sigma ? LineVerdict::kDirectionUnknown : LineVerdict::kGood);
+    EXPECT_EQ(judgeLine(upright, params, deep, 4), by_sigma ? LineVerdict::kDistanceUnknown : LineVerdict::kGood);
+  }
+}
+
 }  // namespace
 }  // namespace lintel
