@@ -98,6 +98,30 @@ TEST_F(ColmapExport, BinaryHoldsTheSame) {
   EXPECT_EQ(points, "");
 }
 
+/// Each lens with the model of COLMAP that holds all of its coefficients; one that has none is refused by name.
+TEST_F(ColmapExport, LensesHaveTheirModels) {
+  const auto camera = [&](LensModel model, const std::array<double, 8>& lens) {
+    LineMap lensed = map();
+    lensed.rig.camera.model = model;
+    lensed.rig.camera.lens = lens;
+    std::filesystem::remove_all(in("model.colmaptxt"));
+    exportMap(lensed, in("model.colmaptxt"));
+    const std::string text = content(in("model.colmaptxt/cameras.txt"));
+    return text.substr(text.find('\n') + 1);
+  };
+  EXPECT_EQ(camera(LensModel::kEquidistant, {0.5, 0.25, 0.125, 0.0625}),
+            "1 OPENCV_FISHEYE 200 100 100 100 100 50 0.5 0.25 0.125 0.0625\n");
+  EXPECT_EQ(camera(LensModel::kRational, {0.5, 0.25, 0.125, 0.0625, 1, 2, 3, 4}),
+            "1 FULL_OPENCV 200 100 100 100 100 50 0.5 0.25 0.125 0.0625 1 2 3 4\n");
+  EXPECT_EQ(camera(LensModel::kRadialTangential, {0.5, 0.25, 0.125, 0.0625, 2}),
+            "1 FULL_OPENCV 200 100 100 100 100 50 0.5 0.25 0.125 0.0625 2 0 0 0\n");
+  EXPECT_THAT(
+      [&] {
+        camera(LensModel::kDoubleSphere, {-0.2, 0.6});
+      },
+      testing::ThrowsMessage<std::runtime_error>(testing::HasSubstr("COLMAP has no lens model double-sphere")));
+}
+
 TEST_F(ColmapExport, ImagesHaveTheNamesOfTheModel) {
   std::int64_t t_ns = 0;
   const auto image = std::make_shared<const GrayImage>(GrayImage{4, 2, std::vector<std::uint8_t>(8, 77)});

@@ -1,17 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include <ceres/gradient_checker.h>
 #include <gtest/gtest.h>
 
-#include <algorithm>
 #include <cmath>
-#include <limits>
 
+#include "TestFactors.h"
 #include "lintel/factors/ImageObservations.h"
 #include "lintel/factors/ImuFactor.h"
 #include "lintel/factors/LineFactor.h"
 #include "lintel/factors/Manifolds.h"
 #include "lintel/factors/PointFactor.h"
-#include "lintel/factors/PriorFactors.h"
 #include "lintel/factors/StructuralFactor.h"
 #include "lintel/factors/VanishingFactor.h"
 #include "lintel/geometry/Frames.h"
@@ -20,25 +17,7 @@
 namespace lintel {
 namespace {
 
-const PoseManifold kPoseManifold;
-const LineManifold kLineManifold;
-
-/// Analytic against numeric Jacobians in the tangent spaces.
-void expectGradients(const ceres::CostFunction& cost, const std::vector<const ceres::Manifold*>& manifolds,
-                     const std::vector<const double*>& blocks, double tolerance = 1e-6) {
-  ceres::NumericDiffOptions options;
-  options.ridders_relative_initial_step_size = 1e-5;  // the default 1e-2 jumps over a line's own extent
-  ceres::GradientChecker checker(&cost, &manifolds, options);
-  ceres::GradientChecker::ProbeResults results;
-  checker.Probe(blocks.data(), tolerance, &results);
-  ASSERT_TRUE(results.return_value);
-  for (std::size_t i = 0; i < blocks.size(); ++i) {
-    // relative to the block's largest entry: a component that is exactly zero has no relative error of its own
-    const Eigen::MatrixXd difference = results.local_jacobians[i] - results.local_numeric_jacobians[i];
-    const double scale = std::max(1e-3, results.local_numeric_jacobians[i].cwiseAbs().maxCoeff());
-    EXPECT_LT(difference.cwiseAbs().maxCoeff(), tolerance * scale) << "block " << i << "\n" << results.error_log;
-  }
-}
+using testing::expectGradients, testing::kLineManifold, testing::kMotion, testing::kPoseManifold, testing::Scene;
 
 RayObservation observation(double x, double y) {
   RayObservation o;
@@ -57,16 +36,7 @@ LineEnd lineEnd(double x, double y, double scale_px) {
   return end;
 }
 
-struct Scene {
-  PoseBlock T_w_bi = toBlock(Pose{expRotation({0.1, -0.2, 0.3}), {0.5, 0.2, -0.1}});
-  PoseBlock T_w_bj = toBlock(Pose{expRotation({0.15, -0.1, 0.4}), {0.9, 0.3, 0.1}});
-  PoseBlock T_b_c = toBlock(Pose{expRotation({0.02, 0.01, 1.55}), {-0.02, -0.06, 0.01}});
-  CorrectionBlock correction = 0.01 * CorrectionBlock::Ones();
-};
-
 Camera eurocCamera() { return {752, 480, 458.654, 457.296, 367.215, 248.375, -0.28, 0.074, 2e-4, 1.8e-5}; }
-
-const FrameMotion kMotion{{0.5, -0.3, 0.8}, {0.3, -0.6, 0.2}};
 
 TEST(PointFactor, HandComputed) {
   // Camera j stands 1 m to the right of the origin; the point is 2 m ahead of the origin, thus at x/z = -0.5.
@@ -185,102 +155,6 @@ TEST(LineEnd, ScaleFollowsTheCorrection) {
   }
 }
 
-Camera fisheye(LensModel model = LensModel::kEquidistant) {
-  Camera camera{752, 480, 259.7, 259.4, 372.3, 243.1, {0.0034824, 0.000715, -0.0020532, 0.00020294}, model};
-  if (model == LensModel::kDoubleSphere) camera.lens = {-0.1755, 0.5929};
-  if (model == LensModel::kExtendedUnified) camera.lens = {0.63, 1.04};
-  return camera;
-}
-
-// Near the axis, far to the side, and behind the plane of the lens.
-const Eigen::Vector2d kFisheyePixels[] = {{380, 250}, {80, 60}, {740, 240}, {5, 5}};
-
-TEST(PointFactor, GradientsThroughFisheyes) {
-  const Scene s;
-  const PointManifold manifold;
-  const CorrectionBlock correction = (CorrectionBlock() << 1, -1, 0.5, 2, 0.01, -0.003, 0.004).finished();
-  const Pose T_w_c = poseFromBlock(s.T_w_bi.data()) * poseFromBlock(s.T_b_c.data());
-  for (const LensModel model : {LensModel::kEquidistant, LensModel::kDoubleSphere, LensModel::kExtendedUnified})
-    for (const Eigen::Vector2d& px : kFisheyePixels) {
-      PointBlock point;
-      point << T_w_c.q * fisheye(model).ray(px), 0.3;
-      point.normalize();
-      PointFactor factor(px, fisheye(model), kMotion, T_w_c.p + Eigen::Vector3d(0.1, 0, 0), 0.7);
-      expectGradients(factor, {&kPoseManifold, &kPoseManifold, nullptr, &manifold},
-                      {s.T_w_bi.data(), s.T_b_c.data(), correction.data(), point.data()}, 1e-5);
-    }
-}
-
-TEST(MakeObservation, TheRayOfAFisheyeFollowsTheCorrection) {
-  for (const LensModel model : {LensModel::kEquidistant, LensModel::kDoubleSphere, LensModel::kExtendedUnified})
-    for (const Eigen::Vector2d& px : kFisheyePixels) {
-      const RayObservation o = makeObservation(fisheye(model), px);
-      for (int k = 0; k < kIntrinsicsSize; ++k) {
-        CorrectionBlock correction = CorrectionBlock::Zero();
-        correction[k] = k < 4 ? 0.1 : 1e-6;
-        const Eigen::Vector3d exact = correctedCamera(fisheye(model), correction.data()).ray(px);
-        EXPECT_LT((o.corrected(correction.data()) - exact).norm(), 1e-3 * (exact - o.ray).norm() + 1e-9)
-            << k << " " << px.transpose();
-      }
-    }
-}
-
-TEST(LineFactor, GradientsThroughAFisheye) {
-  const Scene s;
-  const Camera camera = fisheye();
-  const Pose T_w_c = poseFromBlock(s.T_w_bi.data()) * poseFromBlock(s.T_b_c.data());
-  for (const Eigen::Vector2d& px : kFisheyePixels) {
-    const Eigen::Vector2d end_px = px + Eigen::Vector2d(px.x() < 400 ? 90 : -90, 60);
-    const Eigen::Vector3d p0 = T_w_c * (3 * camera.ray(px)), p1 = T_w_c * (2 * camera.ray(end_px));
-    const Eigen::Vector3d origin = p0 + Eigen::Vector3d(0.1, -0.2, 0.3);
-    const LineBlock line = toBlock(toOrthonormal(movedOrigin(lineThrough(p0, p1), origin)));
-    const auto [start, end] = makeLineEnds(camera, px + Eigen::Vector2d(1, 1), end_px + Eigen::Vector2d(0, 2));
-    expectGradients(LineFactor(start, end, kMotion, origin, 0.8),
-                    {&kPoseManifold, &kPoseManifold, nullptr, &kLineManifold},
-                    {s.T_w_bi.data(), s.T_b_c.data(), s.correction.data(), line.data()}, 1e-4);
-  }
-}
-
-TEST(LineFactor, IsInPixelsOfTheCorrectedFisheye) {
-  const Camera camera = fisheye();
-  const PoseBlock identity = toBlock(Pose{});
-  for (const Eigen::Vector2d& at : {Eigen::Vector2d(380, 250), Eigen::Vector2d(80, 60), Eigen::Vector2d(700, 240)})
-    for (const double angle : {0.0, 0.7, 1.5}) {
-      const Eigen::Vector2d along(std::cos(angle), std::sin(angle)), across(-along.y(), along.x());
-      CorrectionBlock correction, near;
-      correction << 6.5, 4.5, 4, -2, 0.013, -0.006, 0;
-      near << 6, 5, 3.5, -2.5, 0.012, -0.006, 0;
-      const Camera corrected = correctedCamera(camera, correction.data());
-      const Eigen::Vector2d from = at - 3 * along, to = at + 3 * along;  // short: nearly straight in the image
-      const LineBlock line = toBlock(toOrthonormal(lineThrough(corrected.ray(from), corrected.ray(to))));
-      const auto [start, end] = makeLineEnds(camera, from + 2 * across, to + 2 * across, near);
-      const double* blocks[] = {identity.data(), identity.data(), correction.data(), line.data()};
-      Eigen::Vector2d r;
-      ASSERT_TRUE(LineFactor(start, end, {}, Eigen::Vector3d::Zero(), 0.5).Evaluate(blocks, r.data(), nullptr));
-      EXPECT_NEAR(std::abs(r[0]), 4, 0.05) << at.transpose() << " " << angle;
-      EXPECT_NEAR(std::abs(r[1]), 4, 0.05) << at.transpose() << " " << angle;
-    }
-}
-
-TEST(LineEnd, ScaleThroughAFisheyeFollowsTheCorrection) {
-  const Camera camera = fisheye();
-  for (const Eigen::Vector2d& start_px : kFisheyePixels) {
-    const Eigen::Vector2d end_px = start_px + Eigen::Vector2d(start_px.x() < 400 ? 60 : -60, 50);
-    const LineEnd end = makeLineEnds(camera, start_px, end_px).first;
-    for (int k = 0; k < kIntrinsicsSize; ++k) {
-      const double step = k < 4 ? 0.1 : 1e-4;
-      const auto scale = [&](double by) {
-        CorrectionBlock correction = CorrectionBlock::Zero();
-        correction[k] = by;
-        return makeLineEnds(correctedCamera(camera, correction.data()), start_px, end_px).first.linearised_scale_px;
-      };
-      const double numeric = (scale(step) - scale(-step)) / (2 * step) / end.linearised_scale_px;
-      EXPECT_NEAR(end.log_scale_jacobian[k], numeric, 0.01 * std::abs(numeric) + 1e-4)
-          << k << " " << start_px.transpose();
-    }
-  }
-}
-
 LineBlock lineAlong(const Eigen::Vector3d& d, const Eigen::Vector3d& p = {1, 2, 0.5}) {
   return toBlock(toOrthonormal(lineThrough(p, p + d)));
 }
@@ -382,108 +256,6 @@ TEST(ImuFactor, Gradients) {
   motion_j << 0.5, -0.1, 0.1, 0.021, 0.012, -0.03, 0.12, 0.05, 0.21;
   expectGradients(ImuFactor(pre), {&kPoseManifold, nullptr, &kPoseManifold, nullptr},
                   {pose_i.data(), motion_i.data(), pose_j.data(), motion_j.data()}, 1e-5);
-}
-
-TEST(PriorFactor, GradientsFarFromTheLinearisation) {
-  std::srand(3);
-  const Scene s;
-  const LineBlock line0 = toBlock(OrthonormalLine{expRotation({0.3, 0.2, 0.1}), 0.4});
-  const LineBlock line = toBlock(OrthonormalLine{expRotation({0.1, 0.4, -0.2}), 0.6});
-  PriorFactor factor({{std::make_shared<PoseManifold>(), s.T_w_bi}, {std::make_shared<LineManifold>(), line0}},
-                     Eigen::MatrixXd::Random(8, 10), Eigen::VectorXd::Random(8));
-  expectGradients(factor, {&kPoseManifold, &kLineManifold}, {s.T_w_bj.data(), line.data()});
-}
-
-TEST(BlockPrior, WeighsBySigmaAndLeavesInfiniteOnesFree) {
-  const Eigen::Vector3d x0(1, 2, 3), x(2, 4, 6);
-  const auto prior = makeBlockPrior(std::make_shared<VectorManifold>(3), x0,
-                                    Eigen::Vector3d(0.5, std::numeric_limits<double>::infinity(), 3));
-  const double* blocks[] = {x.data()};
-  Eigen::Vector3d r;
-  ASSERT_TRUE(prior->Evaluate(blocks, r.data(), nullptr));
-  EXPECT_TRUE(r.isApprox(Eigen::Vector3d(2, 0, 1)));
-}
-
-/// A prior over two poses, a motion and the extrinsics, away from its linearisation, with A = N (I - G G^+): blind to
-/// the gauge where it was linearised, as marginalisation leaves it.
-struct GaugeFreePrior {
-  std::vector<Pose> poses_0{{expRotation({0.1, -0.2, 0.3}), {0.5, 0.2, -0.1}},
-                            {expRotation({0.2, 0.1, -1.3}), {2, -1, 0.4}}};
-  MotionBlock motion_0 = MotionBlock::LinSpaced(-0.4, 0.5);
-  PoseBlock extrinsics_0 = toBlock(Pose{expRotation({0.02, 0.01, 1.55}), {-0.02, -0.06, 0.01}});
-  std::unique_ptr<PriorFactor> factor;
-
-  GaugeFreePrior() {
-    const auto pose = std::make_shared<PoseManifold>();
-    std::vector<PriorBlock> blocks{{pose, toBlock(poses_0[0]), GaugeAction::kPose},
-                                   {pose, toBlock(poses_0[1]), GaugeAction::kPose},
-                                   {std::make_shared<VectorManifold>(kMotionSize), motion_0, GaugeAction::kMotion},
-                                   {pose, extrinsics_0}};
-    constexpr int n = 3 * kPoseTangent + kMotionSize;
-    Eigen::MatrixXd A(8, n), G = Eigen::MatrixXd::Zero(n, 4);
-    for (int i = 0; i < 8; ++i)
-      for (int k = 0; k < n; ++k) A(i, k) = std::sin(1 + 3.7 * i + 1.3 * k * k);
-    for (int k = 0; k < 2; ++k) {
-      G.block<3, 3>(6 * k, 0).setIdentity();
-      G.block<3, 1>(6 * k, 3) = Eigen::Vector3d::UnitZ().cross(poses_0[k].p);
-      G.block<3, 1>(6 * k + 3, 3) = poses_0[k].q.conjugate() * Eigen::Vector3d::UnitZ();
-    }
-    G.block<3, 1>(12, 3) = Eigen::Vector3d::UnitZ().cross(velocityOf(motion_0.data()));
-    A -= A * G * (G.transpose() * G).inverse() * G.transpose();
-    factor = std::make_unique<PriorFactor>(std::move(blocks), A, Eigen::VectorXd::LinSpaced(8, -1, 1));
-  }
-};
-
-struct PriorState {
-  PoseBlock first, second, extrinsics;
-  MotionBlock motion;
-  std::vector<const double*> blocks() const { return {first.data(), second.data(), motion.data(), extrinsics.data()}; }
-};
-
-/// The linearisation point moved by much (the world) and by little (each block by itself).
-PriorState displaced(const GaugeFreePrior& prior, const Pose& world, double little) {
-  const auto moved = [&](const Pose& pose, double by) {
-    return toBlock(world * pose *
-                   Pose{expRotation(by * Eigen::Vector3d(0.3, -0.2, 0.5)), by * Eigen::Vector3d(1, 2, -1)});
-  };
-  PriorState state{moved(prior.poses_0[0], little), moved(prior.poses_0[1], -little), prior.extrinsics_0,
-                   prior.motion_0};
-  state.motion.segment<3>(kVelocityAt) = world.q * (velocityOf(prior.motion_0.data()) + Eigen::Vector3d(little, 0, 0));
-  state.motion[kBiasGyroAt] += little;
-  return state;
-}
-
-const Pose kOtherWorld{Eigen::Quaterniond(Eigen::AngleAxisd(2.1, Eigen::Vector3d::UnitZ())), {30, -20, 5}};
-
-TEST(PriorFactor, DoesNotChangeWhenTheWorldMoves) {
-  const GaugeFreePrior prior;
-  const PriorState here = displaced(prior, Pose{}, 0.05), there = displaced(prior, kOtherWorld, 0.05);
-  Eigen::VectorXd r_here(8), r_there(8), r_0(8);
-  ASSERT_TRUE(prior.factor->Evaluate(here.blocks().data(), r_here.data(), nullptr));
-  ASSERT_TRUE(prior.factor->Evaluate(there.blocks().data(), r_there.data(), nullptr));
-  EXPECT_LT((r_here - r_there).norm(), 1e-9);
-  const PriorState at_0 = displaced(prior, Pose{}, 0);
-  ASSERT_TRUE(prior.factor->Evaluate(at_0.blocks().data(), r_0.data(), nullptr));
-  EXPECT_GT((r_here - r_0).norm(), 0.01) << "it is not blind to the rest";
-}
-
-TEST(PriorFactor, GradientsInAnotherWorld) {
-  const GaugeFreePrior prior;
-  for (const double little : {0.0, 0.05, 0.4}) {
-    const PriorState state = displaced(prior, kOtherWorld, little);
-    expectGradients(*prior.factor, {&kPoseManifold, &kPoseManifold, nullptr, &kPoseManifold}, state.blocks(), 1e-5);
-  }
-}
-
-TEST(PriorFactor, PlainKnowledgeOfAPoseIsAbsolute) {
-  const auto prior =
-      makeBlockPrior(std::make_shared<PoseManifold>(), toBlock(Pose{}), Eigen::VectorXd::Constant(6, 0.1));
-  const PoseBlock moved = toBlock(Pose{Eigen::Quaterniond::Identity(), {1, 0, 0}});
-  const double* blocks[] = {moved.data()};
-  Eigen::VectorXd r(6);
-  ASSERT_TRUE(prior->Evaluate(blocks, r.data(), nullptr));
-  EXPECT_NEAR(r[0], 10, 1e-12);
-  EXPECT_LT(prior->anchor(), 0);
 }
 
 }  // namespace

@@ -89,6 +89,10 @@ class LintelVio {
     line_.option("-c,--config", config_, "Configuration; what it leaves out keeps its default").type("CONFIG.yaml");
     line_.option("--set", settings_, "Set one option, e.g. --set estimator.keyframes=8").type("KEY=VALUE").repeatable();
     addRecordingOptions(line_, recording_params_);
+    line_
+        .option("--mask", recording_params_.mask,
+                "Image of the camera's size: nothing is detected or tracked where it is black")
+        .type("FILE");
     line_.flag("--info", info_,
                "List the recording's sensors, describe its rig, say what looks wrong with it, and stop");
     line_.option("--save-calibration", info_request_.save_calibration, "With --info: write the rig to this file")

@@ -27,6 +27,20 @@ class CalibrationReader {
   Calibration calibration_;
 };
 
+/// The keys that Kalibr and EuRoC have in common, and the coefficients under theirs.
+CameraDescription describe(const YamlFile& file, const char* coefficients_key) {
+  CameraDescription d;
+  d.projection = file.get<std::string>("camera_model");
+  d.distortion = file.get<std::string>("distortion_model");
+  d.intrinsics = file.numbers("intrinsics");
+  if (d.distortion != "none") d.coefficients = file.numbers(coefficients_key);
+  const std::vector<double> size = file.list("resolution", 2);
+  d.width = size[0];
+  d.height = size[1];
+  d.coefficients_key = coefficients_key;
+  return d;
+}
+
 bool hasChainCamera(const YamlFile& file) { return file.isMap("cam0") && file.below("cam0").has("intrinsics"); }
 
 void CalibrationReader::read(const std::string& path) {
@@ -60,16 +74,8 @@ void CalibrationReader::readChain(const YamlFile& file) {
 }
 
 void CalibrationReader::readChainCamera(const YamlFile& file, const std::string& label) {
-  CameraDescription d;
-  d.projection = file.get<std::string>("camera_model");
-  d.distortion = file.get<std::string>("distortion_model");
-  d.intrinsics = file.numbers("intrinsics");
-  if (d.distortion != "none") d.coefficients = file.numbers("distortion_coeffs");
-  const std::vector<double> size = file.list("resolution", 2);
-  d.width = size[0];
-  d.height = size[1];
-  d.coefficients_key = "distortion_coeffs";
-  CameraCalibration camera = describedCamera(std::move(d), file.where("").substr(0, file.where("").size() - 1));
+  CameraCalibration camera =
+      describedCamera(describe(file, "distortion_coeffs"), file.where("").substr(0, file.where("").size() - 1));
   camera.label = label;
   camera.topic = file.get<std::string>("rostopic", "");
   // Kalibr: T_cam_imu takes coordinates in the IMU to coordinates in the camera
@@ -99,15 +105,7 @@ void CalibrationReader::readImu(const YamlFile& file) {
 /// A sensor.yaml of EuRoC's form, whose T_BS is taken as the camera's pose on the IMU.
 void CalibrationReader::readSensorCamera(const YamlFile& file) {
   nameForm("EuRoC");
-  CameraDescription d;
-  d.projection = file.get<std::string>("camera_model");
-  d.distortion = file.get<std::string>("distortion_model");
-  d.intrinsics = file.numbers("intrinsics");
-  if (d.distortion != "none") d.coefficients = file.numbers("distortion_coefficients");
-  const std::vector<double> size = file.list("resolution", 2);
-  d.width = size[0];
-  d.height = size[1];
-  CameraCalibration camera = describedCamera(std::move(d), file.path());
+  CameraCalibration camera = describedCamera(describe(file, "distortion_coefficients"), file.path());
   camera.T_b_c = calibratedPose(file.matrix4("T_BS"), file.where("T_BS"));
   if (file.has("rate_hz")) camera.rate_hz = file.positive("rate_hz");
   addCamera(std::move(camera), calibration_);

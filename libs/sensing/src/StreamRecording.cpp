@@ -1,7 +1,32 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "StreamRecording.h"
 
+#include <algorithm>
+
+#include "ImageFile.h"
+
 namespace lintel {
+namespace {
+
+/// Throws RecordingError.
+std::shared_ptr<const GrayImage> readMask(const std::string& file, const Camera& camera) {
+  if (file.empty()) return nullptr;
+  GrayImage mask;
+  try {
+    mask = readGrayImage(file);
+  } catch (const ImageFault& fault) {
+    throw RecordingError(std::string(fault.what()) + ": give an image of the camera's size as mask");
+  }
+  if (mask.width != camera.width || mask.height != camera.height)
+    throw RecordingError(file + ": the mask is " + std::to_string(mask.width) + "x" + std::to_string(mask.height) +
+                         " pixels, the camera " + std::to_string(camera.width) + "x" + std::to_string(camera.height) +
+                         ": give a mask of the camera's size");
+  if (std::all_of(mask.pixels.begin(), mask.pixels.end(), [](std::uint8_t grey) { return grey == 0; }))
+    throw RecordingError(file + ": the mask is black everywhere: make it white where the image is to be used");
+  return std::make_shared<const GrayImage>(std::move(mask));
+}
+
+}  // namespace
 
 StreamRecording::StreamRecording(std::unique_ptr<SensorStream> stream, const RecordingParams& params)
     : rig_(stream->rig()),
@@ -9,7 +34,9 @@ StreamRecording::StreamRecording(std::unique_ptr<SensorStream> stream, const Rec
       runs_ahead_(params.frames_ahead > 0),
       log_(stream->openingWarnings()),
       producer_(std::move(stream), params),
-      queue_(params.frames_ahead) {}
+      queue_(params.frames_ahead) {
+  rig_.mask = readMask(params.mask, rig_.camera);
+}
 
 StreamRecording::~StreamRecording() {
   queue_.close();

@@ -33,7 +33,7 @@ class StreamRecording final : public Recording {
   ItemPtr take();
   void runAhead();
 
-  Rig rig_;
+  Rig rig_;  ///< the stream's, with the mask
   std::size_t expected_frames_;
   bool runs_ahead_;
   WarningLog log_;

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <gmock/gmock.h>
 
+#include <opencv2/imgcodecs.hpp>
+
 #include "TimeTicks.h"
 #include "TinyEuroc.h"
 
@@ -174,6 +176,24 @@ TEST_F(EurocRecordingTest, NamedCameraIsRead) {
   const Everything other = readAll(root_, params);
   EXPECT_EQ(other.steps[0].frame.image->pixels[0], 97);
   EXPECT_EQ(readAll(root_).steps[0].frame.image->pixels[0], 0);
+}
+
+TEST_F(EurocRecordingTest, TheMaskHasTheCamerasSize) {
+  const auto write = [&](const char* name, int width, int grey) {
+    cv::imwrite(folder_ / name, cv::Mat(24, width, CV_8U, cv::Scalar(grey)));
+    return folder_ / name;
+  };
+  RecordingParams params;
+  params.mask = write("mask.png", 32, 255);
+  ASSERT_NE(openRecording(root_, params)->rig().mask, nullptr);
+  EXPECT_EQ(openRecording(root_, params)->rig().mask->pixels.size(), 32U * 24U);
+  params.mask = write("wide.png", 33, 255);
+  EXPECT_THAT(openingError(root_, params),
+              HasSubstr("wide.png: the mask is 33x24 pixels, the camera 32x24: give a mask"));
+  params.mask = write("black.png", 32, 0);
+  EXPECT_THAT(openingError(root_, params), HasSubstr("black everywhere"));
+  params.mask = "absent.png";
+  EXPECT_THAT(openingError(root_, params), HasSubstr("absent.png: image file missing"));
 }
 
 }  // namespace

@@ -94,7 +94,8 @@ std::vector<cv::Point2f> CornerDetector::candidates(const ImagePyramid& pyramid,
   // Half resolution: a quarter of the work, less noise, and KLT follows the patch, not the pixel.
   const int level = std::min(1, pyramid.levels() - 1);
   const int scale = 1 << level;
-  const cv::Mat response = cornerResponse(pyramid.image(level));
+  cv::Mat response = cornerResponse(pyramid.image(level));
+  mask_.blacken(response, scale);
   const int border = params_.border_px / scale + 2;
   std::vector<Candidate> maxima = blockMaxima(response, border, static_cast<float>(min_quality));
   std::sort(maxima.begin(), maxima.end(), [](const Candidate& a, const Candidate& b) {

@@ -4,6 +4,7 @@
 #include <opencv2/core.hpp>
 #include <vector>
 
+#include "ImageMask.h"
 #include "ImagePyramid.h"
 #include "lintel/tracking/FrontEndParams.h"
 
@@ -12,7 +13,7 @@ namespace lintel {
 /// Finds new corners to track where there are none yet, spread evenly over the image.
 class CornerDetector {
  public:
-  explicit CornerDetector(const PointTrackerParams& params) : params_(params) {}
+  CornerDetector(const ImageMask& mask, const PointTrackerParams& params) : mask_(mask), params_(params) {}
 
   /// Up to `wanted` corners of the current image, at least min_distance_px from `taken` and from each other. Cells of
   /// the image with fewer points come first, then stronger corners.
@@ -22,6 +23,7 @@ class CornerDetector {
   /// Local maxima of the corner response, strongest first.
   std::vector<cv::Point2f> candidates(const ImagePyramid& pyramid, double min_quality) const;
 
+  ImageMask mask_;
   PointTrackerParams params_;
 };
 

@@ -85,7 +85,7 @@ std::vector<std::optional<std::size_t>> LineMatcher::match(const std::vector<Ima
 }
 
 DescriptorLineTracker::DescriptorLineTracker(const Rig& rig, const LineTrackerParams& params)
-    : params_(params), camera_(rig.camera), detector_(camera_, params), matcher_(camera_, params) {}
+    : params_(params), camera_(rig.camera, ImageMask(rig)), detector_(camera_, params), matcher_(camera_, params) {}
 
 std::vector<ImageLine> DescriptorLineTracker::detect(const ImagePyramid& pyramid, LineStatistics& statistics) {
   std::vector<ImageLine> detected;

@@ -85,8 +85,8 @@ class Profiler {
         n_(line.normal()),
         step_valid_px_(camera.scaled(16)) {}
 
-  /// Candidates at `s` along the line, `reach` level pixels to both sides of `centre_px` off it; false outside the
-  /// image.
+  /// Candidates at `s` along the line, `reach` level pixels to both sides of `centre_px` off it; false where the image
+  /// is not used.
   bool look(double s, double centre_px, int reach, Sample& sample) {
     const Eigen::Vector2d u = line_.start + s * d_ + centre_px * n_;
     if (!camera_.mayBeSeen(u, line_.axis)) return false;
@@ -96,7 +96,7 @@ class Profiler {
       stride_ = step_.norm();
     }
     const Eigen::Vector2d px = camera_.toImage(u, line_.axis);
-    if (!camera_.camera().contains(px, scale_ * ((reach + 1) * std::max(stride_, 1.0) + 2))) return false;
+    if (!camera_.uses(px, scale_ * ((reach + 1) * std::max(stride_, 1.0) + 2))) return false;
     GradientProfile profile;
     gradientsAcross(image_, px / scale_, step_, stride_, reach, profile);  // of the level: there a step is scale px
     sample = {};

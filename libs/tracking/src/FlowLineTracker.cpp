@@ -24,7 +24,7 @@ constexpr double kWithoutFlow_px = 2;  ///< by which a line may be farther off w
 
 FlowLineTracker::FlowLineTracker(const Rig& rig, const LineTrackerParams& params)
     : params_(params),
-      camera_(rig.camera),
+      camera_(rig.camera, ImageMask(rig)),
       detector_(camera_, params),
       flow_(camera_, params),
       merger_(camera_, params),

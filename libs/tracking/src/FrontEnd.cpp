@@ -19,6 +19,8 @@ void checkParams(const Rig& rig, const FrontEndParams& params) {
   checkAllowed("camera height", rig.camera.height, Range{64, 20000});
   checkAllowed("camera fx", rig.camera.fx, Range{1, 1e6});
   checkAllowed("camera fy", rig.camera.fy, Range{1, 1e6});
+  if (rig.mask && (rig.mask->width != rig.camera.width || rig.mask->height != rig.camera.height))
+    throw std::invalid_argument("front end: the mask does not have the size of the rig's camera");
   checkAllowed("features", params.features, FrontEndParams::kFeatures);
   checkRanges(params, "tracking.");
   checkAllowed("tracking.lines.min_length_px", params.lines.min_length_px, Range{params.lines.keep_length_px, 10000});

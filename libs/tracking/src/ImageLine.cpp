@@ -32,8 +32,8 @@ constexpr double kRoom = 1.02;
 
 }  // namespace
 
-LineCamera::LineCamera(const Camera& camera)
-    : camera_(camera), focal_(camera.meanFocal()), pixel_scale_(pixelScale(camera)) {
+LineCamera::LineCamera(const Camera& camera, const ImageMask& mask)
+    : camera_(camera), mask_(mask), focal_(camera.meanFocal()), pixel_scale_(pixelScale(camera)) {
   if (camera.wide()) {
     least_cosine_ = std::cos(std::min(kRoom * largestAngle(camera), 3.14));
     return;
@@ -116,7 +116,7 @@ ImageLine LineCamera::turned(const ImageLine& line, const Eigen::Quaterniond& R_
 }
 
 bool LineCamera::sees(const Eigen::Vector2d& u, double border_px, const Eigen::Vector3d& axis) const {
-  return mayBeSeen(u, axis) && camera_.contains(toImage(u, axis), border_px);
+  return mayBeSeen(u, axis) && uses(toImage(u, axis), border_px);
 }
 
 std::optional<ImageLine> LineCamera::clip(const ImageLine& line, double border_px) const {

@@ -6,6 +6,7 @@
 #include <optional>
 #include <vector>
 
+#include "ImageMask.h"
 #include "lintel/geometry/Camera.h"
 
 namespace lintel {
@@ -32,13 +33,18 @@ struct ImageLine {
 /// Conversions between undistorted pixels and the image.
 class LineCamera {
  public:
-  explicit LineCamera(const Camera& camera);
+  explicit LineCamera(const Camera& camera, const ImageMask& mask = {});
 
   double focal() const { return focal_; }
   /// A length that stands for an angle, given in pixels at the reference focal length (core/ParamRange.h), in pixels of
   /// this camera.
   double scaled(double reference_px) const { return pixel_scale_ * reference_px; }
   const Camera& camera() const { return camera_; }
+  const ImageMask& mask() const { return mask_; }
+  /// Whether a pixel is in the image, at least `border_px` from its edge, and used.
+  bool uses(const Eigen::Vector2d& px, double border_px) const {
+    return camera_.contains(px, border_px) && !mask_.covers(px);
+  }
 
   // `axis`: of the line to which the undistorted pixel belongs.
 
@@ -58,7 +64,7 @@ class LineCamera {
   bool mayBeSeen(const Eigen::Vector2d& u, const Eigen::Vector3d& axis = Eigen::Vector3d::UnitZ()) const {
     return camera_.wide() ? mayBeSeenWide(u, axis) : u.squaredNorm() <= max_radius_ * max_radius_;
   }
-  /// Seen in the image, at least `border_px` from its edge.
+  /// Seen in the used part of the image, at least `border_px` from its edge.
   bool sees(const Eigen::Vector2d& u, double border_px, const Eigen::Vector3d& axis = Eigen::Vector3d::UnitZ()) const;
   /// The part of `line` that the image sees; empty when there is none.
   std::optional<ImageLine> clip(const ImageLine& line, double border_px) const;
@@ -79,6 +85,7 @@ class LineCamera {
   ImageLine between(const Eigen::Vector3d& start_ray, const Eigen::Vector3d& end_ray) const;
 
   Camera camera_;
+  ImageMask mask_;
   double focal_;
   double pixel_scale_;
   double max_radius_ = 0;    ///< of undistorted pixels in the image, with a little room

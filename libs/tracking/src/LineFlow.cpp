@@ -135,7 +135,7 @@ PredictedLine LineFlow::fit(const Samples& samples, std::size_t index, double ju
   std::vector<Eigen::Vector2d> guessed_u, found_u;
   for (std::size_t i = samples.first[index]; i < samples.first[index + 1]; ++i) {
     const Eigen::Vector2d px = toEigen(to[i]);
-    if (!found[i] || !camera_.camera().contains(px, 1) ||
+    if (!found[i] || !camera_.uses(px, 1) || camera_.mask().covers(toEigen(samples.from[i])) ||
         cv::norm(to[i] - samples.guess[i]) > camera_.scaled(kMaxDeviation_px))
       continue;
     guessed_u.push_back(camera_.fromImage(toEigen(samples.guess[i]), guess.axis));

@@ -19,8 +19,6 @@ constexpr double kCrowded = 0.5;     ///< of the distance that new points keep: 
 constexpr int kInliersForGyro = 15;  ///< with fewer their rotation does not correct that of the gyroscope
 constexpr int kInliersForDirection = 10;  ///< of a translation
 
-bool inside(const Camera& camera, const cv::Point2f& p, double border) { return camera.contains({p.x, p.y}, border); }
-
 TwoViewParams twoViewParams(const Camera& camera, double threshold_px) {
   TwoViewParams params;
   params.focal_px = camera.meanFocal();
@@ -33,10 +31,15 @@ TwoViewParams twoViewParams(const Camera& camera, double threshold_px) {
 
 PointTracker::PointTracker(const Rig& rig, const PointTrackerParams& params)
     : camera_(rig.camera),
+      mask_(rig),
       params_(params),
-      detector_(params),
+      detector_(mask_, params),
       drift_(params.drift_frames, twoViewParams(rig.camera, params.drift_px)),
       step_(rig.camera.meanFocal(), rig.camera.wide()) {}
+
+bool PointTracker::mayBeAt(const cv::Point2f& px) const {
+  return camera_.contains({px.x, px.y}, params_.border_px) && !mask_.covers({px.x, px.y});
+}
 
 PatchFlowParams PointTracker::flowParams(int levels) const {
   return {params_.window_px, levels, params_.max_iterations, kPointSettled_px, kPointTexture};
@@ -86,7 +89,7 @@ void PointTracker::followFrom(const ImagePyramid& pyramid, const std::vector<std
     const std::size_t i = indices[k];
     followed.px[i] = to[k];
     followed.outcome[i] = Outcome::kLost;
-    if (!found[k] || !inside(camera_, to[k], params_.border_px)) continue;
+    if (!found[k] || !mayBeAt(to[k])) continue;
     const bool is_young = points_[i].track_length < kProven;
     const AnchorVerdict verdict = is_young ? AnchorVerdict::kUnsure : align(i);
     if (is_young) young.push_back(i);

@@ -9,6 +9,7 @@
 #include "CornerDetector.h"
 #include "DriftCheck.h"
 #include "GyroPrediction.h"
+#include "ImageMask.h"
 #include "ImagePyramid.h"
 #include "PatchAnchors.h"
 #include "PatchFlow.h"
@@ -71,7 +72,10 @@ class PointTracker {
   std::vector<cv::Point2f> pixels() const;
   PatchFlowParams flowParams(int levels) const;
 
+  bool mayBeAt(const cv::Point2f& px) const;
+
   Camera camera_;
+  ImageMask mask_;
   PointTrackerParams params_;
   CornerDetector detector_;
   DriftCheck drift_;

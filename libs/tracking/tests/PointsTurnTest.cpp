@@ -11,7 +11,7 @@ namespace lintel {
 namespace {
 
 constexpr double kFocal_px = 460;
-const TwoViewParams kCamera{kFocal_px};
+const TwoViewParams kTwoViews{kFocal_px};
 
 /// 100 points at depths from 2 to 8 seen by a camera that turns by `rotation` (its new axes in the old ones) and moves.
 std::vector<TwoViewPair> pairsOf(const Eigen::Vector3d& rotation, const Eigen::Vector3d& p_c0_c1, double noise_px = 0) {
@@ -28,7 +28,7 @@ std::vector<TwoViewPair> pairsOf(const Eigen::Vector3d& rotation, const Eigen::V
 
 TEST(PointsTurn, FindsARotationWithoutTranslation) {
   const Eigen::Vector3d rotation(0.03, -0.05, 0.08);
-  const auto turn = turnOfPoints(pairsOf(rotation, Eigen::Vector3d::Zero(), 0.2), kCamera);
+  const auto turn = turnOfPoints(pairsOf(rotation, Eigen::Vector3d::Zero(), 0.2), kTwoViews);
   ASSERT_TRUE(turn);
   EXPECT_LT((turn->rotation - rotation).norm(), 2e-3) << turn->rotation.transpose();
 }
@@ -37,7 +37,7 @@ TEST(PointsTurn, TranslationIsNoRotation) {
   for (const Eigen::Vector3d& p :
        {Eigen::Vector3d(0.08, 0, 0), Eigen::Vector3d(0, 0.03, 0.08), Eigen::Vector3d(-0.03, 0.05, -0.05)}) {
     const Eigen::Vector3d rotation(0.01, 0.02, -0.03);
-    const auto turn = turnOfPoints(pairsOf(rotation, p, 0.2), kCamera);
+    const auto turn = turnOfPoints(pairsOf(rotation, p, 0.2), kTwoViews);
     ASSERT_TRUE(turn);
     for (int axis = 0; axis < 3; ++axis)
       EXPECT_LT(std::abs(turn->rotation[axis] - rotation[axis]), 4 * turn->sigma[axis]) << p.transpose();
@@ -46,12 +46,12 @@ TEST(PointsTurn, TranslationIsNoRotation) {
 }
 
 TEST(PointsTurn, NothingIsSaidOfFewOrUnrelatedPoints) {
-  EXPECT_FALSE(turnOfPoints(std::vector<TwoViewPair>(14), kCamera));
+  EXPECT_FALSE(turnOfPoints(std::vector<TwoViewPair>(14), kTwoViews));
   std::vector<TwoViewPair> pairs;
   for (int i = 0; i < 60; ++i)
     pairs.push_back(
         {{0.7 * std::sin(3.1 * i), 0.5 * std::sin(5.3 * i), 1}, {0.7 * std::sin(7.7 * i), 0.5 * std::sin(9.1 * i), 1}});
-  EXPECT_FALSE(turnOfPoints(pairs, kCamera));
+  EXPECT_FALSE(turnOfPoints(pairs, kTwoViews));
 }
 
 }  // namespace

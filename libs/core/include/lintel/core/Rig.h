@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <memory>
+
+#include "lintel/core/Frame.h"
 #include "lintel/geometry/Camera.h"
 #include "lintel/geometry/Pose.h"
 
@@ -21,6 +24,7 @@ struct Rig {
   double camera_rate_hz = 20;
   ImuNoise imu_noise;
   double imu_rate_hz = 200;
+  std::shared_ptr<const GrayImage> mask;  ///< of the camera's size, black where images are not used; null: nowhere
 };
 
 }  // namespace lintel

@@ -26,6 +26,7 @@ struct RecordingParams {
   std::string camera;                    ///< folder or sensor label; empty = cam0, in a rawlog the alphabetically first
   std::string imu;                       ///< folder or sensor label; empty = imu0, in a rawlog the alphabetically first
   std::vector<std::string> calibration;  ///< files that replace the recording's own calibration (Calibration.h)
+  std::string mask;                      ///< image of the camera's size, black where images are not used; empty = none
   std::size_t frames_ahead = 8;          ///< frames decoded ahead on another thread; 0 = decode when asked
 };
 
