@@ -18,6 +18,7 @@
 #include "window/FailureDetection.h"
 #include "window/KeyframeSelection.h"
 #include "window/OutlierRejection.h"
+#include "window/RollingShutter.h"
 #include "window/WindowMarginalization.h"
 #include "window/WindowMove.h"
 #include "window/WindowRetirement.h"
@@ -157,6 +158,7 @@ void Estimator::Impl::addFrame(const FrameTracks& tracks) {
   newest_t_ns_ = tracks.t_ns;
   if (!pending_imu_.empty()) frame.gyro = pending_imu_.back().gyro;
   window_.addFrame(std::move(frame), tracks);
+  unroll(window_, rig_.line_delay_s);
 }
 
 void Estimator::Impl::initialise(WindowUpdate& update) {
@@ -174,6 +176,7 @@ void Estimator::Impl::initialise(WindowUpdate& update) {
   moveToAnchor();
   tracking_ = true;
   frames_without_points_ = tracks_since_start_ = 0;
+  unroll(window_, rig_.line_delay_s);
   solve(update);
   update.status = EstimatorStatus::kTracking;
   while (static_cast<int>(window_.frames.size()) > params_.keyframes) dropOldest(update);

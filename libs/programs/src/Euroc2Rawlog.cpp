@@ -8,6 +8,7 @@
 
 #include "CommandLine.h"
 #include "ProgramMain.h"
+#include "RecordingOptions.h"
 #include "lintel/reporting/Progress.h"
 #include "lintel/sensing/EurocToRawlog.h"
 
@@ -32,7 +33,9 @@ class Euroc2Rawlog {
 
  private:
   void addOptions() {
-    line_.option("-i,--input", input_, "EuRoC folder: .../mav0 or its parent").required().type("FOLDER");
+    line_.option("-i,--input", input_, "EuRoC folder (.../mav0 or its parent), ROS bag, film or folder of images")
+        .required()
+        .type("INPUT");
     line_.option("-o,--output", output_, "Rawlog to write").required().type("FILE.rawlog");
     line_.flag("-w,--overwrite", params_.overwrite, "Replace an existing rawlog and its image folder");
     line_.flag("-q,--quiet", quiet_, "Print warnings and errors only");
@@ -41,7 +44,8 @@ class Euroc2Rawlog {
         .showDefault();
     const auto embed = line_.flag("--embed", params_.embed, "Put the images into the rawlog instead of FILE_Images/");
     line_.flag("--copy", params_.copy, "Copy the images into FILE_Images/ instead of linking them").excludes(embed);
-    line_.option("--cameras", params_.cameras, "Cameras to write, e.g. cam0,cam1; all by default")
+    addRecordingOptions(line_, params_.recording);
+    line_.option("--cameras", params_.cameras, "Cameras of an EuRoC folder to write, e.g. cam0,cam1; all by default")
         .separatedBy(',')
         .type("CAMERAS");
   }
@@ -60,13 +64,13 @@ class Euroc2Rawlog {
     out_ << summary.imu_samples << " samples imu0";
     if (summary.groundtruth_poses > 0) out_ << ", " << summary.groundtruth_poses << " poses groundtruth";
     out_ << "\n";
-    if (summary.images_folder.empty()) return;
+    if (summary.images_folder.empty() || summary.linked + summary.copied == 0) return;
     out_ << summary.images_folder << ": " << summary.linked << " images linked, " << summary.copied << " copied\n";
   }
 
   std::ostream& out_;
   std::ostream& err_;
-  CommandLine line_{kName, "Writes an EuRoC recording as an MRPT rawlog."};
+  CommandLine line_{kName, "Writes a recording as an MRPT rawlog."};
   std::string input_, output_;
   EurocToRawlogParams params_;
   bool quiet_ = false;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "lintel/programs/LintelSim.h"
 
+#include <cstdio>
 #include <filesystem>
 #include <iomanip>
 #include <ostream>
@@ -38,6 +39,7 @@ class LintelSim {
     }
     params_.imu.initial_gyro_bias *= imu_bias_;
     params_.imu.initial_accel_bias *= imu_bias_;
+    readSize();
     const Simulation simulation(params_);
     const SimulationSummary summary = write(simulation, folder);
     if (!quiet_) print(summary, folder);
@@ -89,6 +91,8 @@ class LintelSim {
             "107 degrees (equidistant, double-sphere, eucm)")
         .oneOf({"none", "radial-tangential", "rational", "equidistant", "double-sphere", "eucm"})
         .showDefault();
+    line_.option("--size", size_, "Size of the images, the width's field of view kept").type("WIDTHxHEIGHT");
+    line_.option("--rate", params_.rate_hz, "Images a second").positive().showDefault();
     CameraSensorParams& camera = params_.camera;
     const auto number = [this](const char* name, double& value, const char* help) {
       return line_.option(name, value, help).notNegative().showDefault();
@@ -98,6 +102,8 @@ class LintelSim {
     number("--imu-bias", imu_bias_, "IMU biases at the start; 1 = as EuRoC's");
     number("--bias-walk", params_.imu.walk_scale, "How fast the IMU biases drift; 1 = EuRoC's");
     number("--blur", camera.exposure_time_s, "Exposure time: motion blur [s]");
+    number("--line-delay", camera.line_delay_s,
+           "Rolling shutter: from row to row; the stamp is that of the middle row [s]");
     number("--exposure-change", camera.exposure_change, "Changes of the exposure (deviation of its logarithm)");
     number("--vignetting", camera.vignetting, "Darkening in the corners").range(0.0, 1.0);
     line_.option("--camera-delay", params_.camera_delay_s, "Images are older than their stamps by so much [s]")
@@ -107,6 +113,13 @@ class LintelSim {
            "sensor.yaml is wrong by so much; 1 = as a fair calibration");
     number("--drop-images", params_.drop_images_every_s, "0.3 s without images so often [s]; 0 = never");
     number("--drop-imu", params_.drop_imu_every_s, "0.1 s without IMU so often [s]; 0 = never");
+  }
+
+  void readSize() {
+    if (size_.empty()) return;
+    char end = 0;
+    if (std::sscanf(size_.c_str(), "%dx%d%c", &params_.width, &params_.height, &end) != 2 || params_.width <= 0)
+      throw UsageError("--size must be like 1280x720");
   }
 
   void refuseToOverwrite(const fs::path& folder) const {
@@ -146,7 +159,7 @@ class LintelSim {
   std::ostream& out_;
   std::ostream& err_;
   CommandLine line_{kName, "Makes a simulated recording: images, IMU, and everything true about them."};
-  std::string folder_;
+  std::string folder_, size_;
   SimulationParams params_;
   double imu_bias_ = 1;
   bool noise_free_ = false, overwrite_ = false, quiet_ = false;

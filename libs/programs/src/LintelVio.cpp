@@ -77,13 +77,17 @@ class LintelVio {
            "  lintel-vio flight.rawlog -o out --from 10 --to 40  thirty seconds of it\n"
            "  lintel-vio flight.bag -o out --calibration camchain-imucam.yaml --calibration imu.yaml   a ROS bag\n"
            "  lintel-vio flight.mcap --info                      its topics\n"
+           "  lintel-vio walk.mp4 -o out --times walk.csv --imu-file imu.csv --calibration rig.yaml   a film\n"
            "  lintel-vio flight.rawlog -o out --set features=points   points alone\n"
            "  lintel-vio --dump-config > my.yaml                 every option with its default";
   }
 
   void addOptions() {
     line_.footer(examples());
-    line_.option("input", input_, "A rawlog, an EuRoC folder (mav0 or its parent), or a ROS bag (.bag, .db3, .mcap)")
+    line_
+        .option("input", input_,
+                "A rawlog, an EuRoC folder (mav0 or its parent), a ROS bag (.bag, .db3, .mcap), a film, or a folder of "
+                "images")
         .type("INPUT");
     line_.option("-o,--output", output_, "Folder to write to; made if it does not exist").type("OUT");
     line_.option("-c,--config", config_, "Configuration; what it leaves out keeps its default").type("CONFIG.yaml");

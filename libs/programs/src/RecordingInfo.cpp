@@ -14,9 +14,9 @@
 namespace lintel {
 namespace {
 
-void printSensors(const std::string& recording, std::ostream& out) {
+void printSensors(const std::string& recording, const RecordingParams& params, std::ostream& out) {
   std::size_t width = 5;
-  const std::vector<RecordedSensor> sensors = recordedSensors(recording);
+  const std::vector<RecordedSensor> sensors = recordedSensors(recording, params);
   for (const RecordedSensor& sensor : sensors) width = std::max(width, sensor.label.size());
   out << recording << ":\n" << std::fixed << std::setprecision(1);
   for (const RecordedSensor& sensor : sensors) {
@@ -35,7 +35,7 @@ void printSensors(const std::string& recording, std::ostream& out) {
 void printRecordingInfo(const InfoRequest& request, std::ostream& out, std::ostream& err) {
   if (!request.save_calibration.empty() && std::filesystem::exists(request.save_calibration) && !request.overwrite)
     throw std::runtime_error(request.save_calibration + ": exists already; choose another name or add -w");
-  if (!request.recording.empty()) printSensors(request.recording, out);
+  if (!request.recording.empty()) printSensors(request.recording, request.params, out);
   const RigReport report = reportRig(request.recording, request.params);
   out << rigInWords(report.rig, report.time_shift_s);
   for (const std::string& warning : report.warnings) err << "lintel-vio: warning: " << warning << "\n";

@@ -87,6 +87,12 @@ void CalibrationReader::readChainCamera(const YamlFile& file, const std::string&
   }
   if (file.has("timeshift_cam_imu")) camera.time_shift_s = file.finite("timeshift_cam_imu");
   if (file.has("rate_hz")) camera.rate_hz = file.positive("rate_hz");
+  camera.line_delay_s = lineDelay_s(file);
+  // Kalibr: nanoseconds, and the stamp is that of the first row
+  if (file.has("line_delay")) {
+    camera.line_delay_s = checkedLineDelay_s(1e-9 * file.finite("line_delay"), file.where("line_delay"));
+    camera.time_shift_s += 0.5 * (file.list("resolution", 2)[1] - 1) * *camera.line_delay_s;
+  }
   addCamera(std::move(camera), calibration_);
 }
 
@@ -108,6 +114,7 @@ void CalibrationReader::readSensorCamera(const YamlFile& file) {
   CameraCalibration camera = describedCamera(describe(file, "distortion_coefficients"), file.path());
   camera.T_b_c = calibratedPose(file.matrix4("T_BS"), file.where("T_BS"));
   if (file.has("rate_hz")) camera.rate_hz = file.positive("rate_hz");
+  camera.line_delay_s = lineDelay_s(file);
   addCamera(std::move(camera), calibration_);
 }
 

@@ -63,6 +63,11 @@ CameraCalibration vinsCamera(const YamlFile& main, const std::string& number) {
     camera.T_b_c = calibratedPose(T_b_c, main.where("extrinsicRotation"));
   }
   if (main.has("td")) camera.time_shift_s = main.finite("td");
+  camera.line_delay_s = lineDelay_s(main);
+  // VINS: the time of a whole image; its stamp is that of the middle row there, too
+  if (main.get<int>("rolling_shutter", 0) != 0 && main.has("rolling_shutter_tr"))
+    camera.line_delay_s = checkedLineDelay_s(main.finite("rolling_shutter_tr") / file.get<double>("image_height"),
+                                             main.where("rolling_shutter_tr"));
   return camera;
 }
 
@@ -94,7 +99,22 @@ void readOpenCvForm(const YamlFile& file, Calibration& calibration) {
   d.coefficients = file.numbers(coefficients);
   CameraCalibration camera = describedCamera(std::move(d), file.path());
   if (file.has("T_imu_cam")) camera.T_b_c = calibratedPose(file.matrix4("T_imu_cam"), file.where("T_imu_cam"));
+  camera.line_delay_s = lineDelay_s(file);
   addCamera(std::move(camera), calibration);
+}
+
+std::optional<double> lineDelay_s(const YamlFile& file) {
+  if (!file.has("line_delay_s")) return std::nullopt;
+  return checkedLineDelay_s(file.finite("line_delay_s"), file.where("line_delay_s"));
+}
+
+double checkedLineDelay_s(double line_delay_s, const std::string& where) {
+  constexpr double kLongest_s = 1e-3;  // a thousand rows would take a second
+  if (std::abs(line_delay_s) > kLongest_s)
+    throw RecordingError(where +
+                         " is more than a millisecond from row to row: check its unit (line_delay_s: seconds; " +
+                         "Kalibr's line_delay: nanoseconds)");
+  return line_delay_s;
 }
 
 }  // namespace lintel

@@ -24,4 +24,9 @@ void readVinsForm(const YamlFile& file, Calibration& calibration);
 /// The camera alone, as OpenCV's calibration program and ROS' camera_calibration write it.
 void readOpenCvForm(const YamlFile& file, Calibration& calibration);
 
+/// The delay from row to row that a camera's file gives under `line_delay_s`, if it does. Throws RecordingError.
+std::optional<double> lineDelay_s(const YamlFile& file);
+/// Throws RecordingError naming `where` unless it is one that a sensor may have.
+double checkedLineDelay_s(double line_delay_s, const std::string& where);
+
 }  // namespace lintel

@@ -91,6 +91,7 @@ std::string kalibrForm(const Rig& rig, double time_shift_s) {
   text += "  resolution: [" + std::to_string(c.width) + ", " + std::to_string(c.height) + "]\n";
   text += "  rate_hz: " + exactText(rig.camera_rate_hz) + "\n";
   text += "  timeshift_cam_imu: " + exactText(time_shift_s) + "\n";
+  if (rig.line_delay_s != 0) text += "  line_delay_s: " + exactText(rig.line_delay_s) + "\n";
   text += "imu0:\n  update_rate: " + exactText(rig.imu_rate_hz);
   text += "\n  gyroscope_noise_density: " + exactText(rig.imu_noise.gyro_noise);
   text += "\n  gyroscope_random_walk: " + exactText(rig.imu_noise.gyro_walk);
@@ -110,6 +111,7 @@ std::string vinsForm(const Rig& rig, double time_shift_s) {
       std::string("%YAML:1.0\n---\nmodel_type: ") + (c.wide() ? "KANNALA_BRANDT" : "PINHOLE") + "\ncamera_name: cam0\n";
   text += "image_width: " + std::to_string(c.width) + "\nimage_height: " + std::to_string(c.height) + "\n";
   text += vinsCamera(c);
+  if (rig.line_delay_s != 0) text += "line_delay_s: " + exactText(rig.line_delay_s) + "\n";
   text += matrixOfOpenCv("extrinsicRotation", rig.T_b_c.q.toRotationMatrix());
   text += matrixOfOpenCv("extrinsicTranslation", rig.T_b_c.p);
   text += "acc_n: " + exactText(rig.imu_noise.accel_noise * from_density) +

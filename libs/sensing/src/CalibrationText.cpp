@@ -110,6 +110,9 @@ std::string rigInWords(const Rig& rig, double time_shift_s) {
                ? std::string("same clock as the IMU")
                : "an image's time on the IMU's clock is its stamp " + std::string(time_shift_s < 0 ? "- " : "+ ") +
                      rounded(1e3 * std::abs(time_shift_s), 4) + " ms")
+       << (rig.line_delay_s == 0 ? std::string()
+                                 : "; rolling shutter, " + rounded(1e3 * rig.line_delay_s * c.height, 4) +
+                                       " ms from the first row to the last")
        << "\n"
        << "IMU: " << rounded(rig.imu_rate_hz, 4) << " samples a second\n"
        << "  gyroscope: noise " << rounded(rig.imu_noise.gyro_noise, 4) << " rad/s/sqrt(Hz), random walk "

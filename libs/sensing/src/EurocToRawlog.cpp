@@ -7,7 +7,9 @@
 #include <filesystem>
 #include <set>
 
+#include "Bag.h"
 #include "GzStream.h"
+#include "PlainStream.h"
 #include "RawlogFile.h"
 #include "RawlogNote.h"
 #include "RawlogOutput.h"
@@ -24,7 +26,7 @@ class Conversion {
  public:
   Conversion(const std::string& folder, const std::string& rawlog, const EurocToRawlogParams& params,
              const EurocToRawlogProgress& progress)
-      : mav0_(findMav0(folder)),
+      : path_(folder),
         params_(params),
         progress_(progress),
         output_(rawlog, !params.embed, params.overwrite),
@@ -39,12 +41,15 @@ class Conversion {
     bool image;
   };
   std::vector<std::string> cameras() const;
+  bool isPlainEuroc() const;
   void openLanes();
+  void openFolder();
+  void openAny();
   void addCamera(const std::string& label);
   void write(GzOutput& file);
   std::size_t countImages(const std::string& label) const;
 
-  std::string mav0_;
+  std::string path_, mav0_;
   const EurocToRawlogParams& params_;
   const EurocToRawlogProgress& progress_;
   RawlogOutput output_;
@@ -81,12 +86,42 @@ void Conversion::addCamera(const std::string& label) {
   if (!fs::is_directory(folder)) throw RecordingError(folder + ": no such camera: name others with --cameras");
   const EurocCamera camera = loadEurocCamera(folder + "/sensor.yaml");
   note_.camera_rates_hz[label] = camera.rate_hz;
+  if (camera.line_delay_s != 0) note_.line_delays_s[label] = camera.line_delay_s;
   images_total_ += countImages(label);
   ImagePlacer* placer = params_.embed ? nullptr : &placer_;
   lanes_.push_back({makeImageSource(folder, label, camera, placer), &summary_.images[label], true});
 }
 
+/// An EuRoC folder that says all of itself: its files are linked as they are.
+bool Conversion::isPlainEuroc() const {
+  if (!params_.recording.calibration.empty() || isFilm(path_) || isBag(path_) || isImageFolder(path_)) return false;
+  return !fs::is_directory(path_) || fs::exists(fs::path(findMav0(path_)) / "imu0" / "sensor.yaml");
+}
+
 void Conversion::openLanes() {
+  if (fs::path(path_).extension() == ".rawlog") throw RecordingError(path_ + ": is a rawlog already");
+  isPlainEuroc() ? openFolder() : openAny();
+}
+
+void Conversion::openAny() {
+  RecordingParams recording = params_.recording;
+  const std::shared_ptr<SensorStream> stream = openStream(path_, recording);
+  for (const Warning& warning : stream->openingWarnings()) log_.add(warning);
+  const Rig& rig = stream->rig();
+  const std::string label = "cam0";
+  note_.imu_noise = rig.imu_noise;
+  note_.imu_rate_hz = rig.imu_rate_hz;
+  note_.camera_rates_hz[label] = rig.camera_rate_hz;
+  if (rig.line_delay_s != 0) note_.line_delays_s[label] = rig.line_delay_s;
+  mav0_ = path_;
+  images_total_ = stream->countFrames(recording);
+  lanes_.push_back({makeImuSource(stream), &summary_.imu_samples, false});
+  lanes_.push_back(
+      {makeImageSource(stream, label, params_.embed ? "" : output_.imagesFolder()), &summary_.images[label], true});
+}
+
+void Conversion::openFolder() {
+  mav0_ = findMav0(path_);
   const std::string imu_folder = mav0_ + "/imu0", truth = mav0_ + "/state_groundtruth_estimate0/data.csv";
   const EurocImu imu = loadEurocImu(imu_folder + "/sensor.yaml");
   note_.imu_noise = imu.noise;

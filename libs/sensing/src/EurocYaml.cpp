@@ -3,6 +3,7 @@
 
 #include <vector>
 
+#include "CalibrationForms.h"
 #include "CameraModel.h"
 #include "CanonicalPose.h"
 #include "YamlFile.h"
@@ -28,6 +29,7 @@ EurocCamera loadEurocCamera(const std::string& path) {
   camera.model = makeCamera(description, path);
   camera.T_v_c = calibratedPose(file.matrix4("T_BS"), file.where("T_BS"));
   camera.rate_hz = file.positive("rate_hz");
+  camera.line_delay_s = lineDelay_s(file).value_or(0);
   return camera;
 }
 
@@ -48,6 +50,7 @@ Rig rigOf(const EurocCamera& camera, const EurocImu& imu) {
   rig.camera = camera.model;
   rig.T_b_c = imu.T_v_b.inverse() * camera.T_v_c;
   rig.camera_rate_hz = camera.rate_hz;
+  rig.line_delay_s = camera.line_delay_s;
   rig.imu_noise = imu.noise;
   rig.imu_rate_hz = imu.rate_hz;
   return rig;

@@ -12,6 +12,7 @@ struct EurocCamera {
   Camera model;
   Pose T_v_c;  ///< T_BS: camera in the vehicle's frame, canonical
   double rate_hz = 0;
+  double line_delay_s = 0;  ///< of a rolling shutter (Rig.h)
 };
 
 /// imu0/sensor.yaml.

@@ -40,6 +40,7 @@ Rig GivenCalibration::rig(const std::function<Rig()>& own, std::vector<Warning>&
     rig.camera = camera_->make();
     if (camera_->T_b_c) rig.T_b_c = *camera_->T_b_c;
     if (camera_->rate_hz) rig.camera_rate_hz = *camera_->rate_hz;
+    if (camera_->line_delay_s) rig.line_delay_s = *camera_->line_delay_s;
   }
   if (calibration_.imu_noise)
     rig.imu_noise = *calibration_.imu_noise;

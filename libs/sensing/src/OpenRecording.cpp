@@ -3,7 +3,9 @@
 #include <filesystem>
 
 #include "BagStream.h"
+#include "EurocFolder.h"
 #include "EurocStream.h"
+#include "PlainStream.h"
 #include "RawlogStream.h"
 #include "ShiftedStream.h"
 #include "StreamRecording.h"
@@ -22,16 +24,34 @@ void checkParams(const RecordingParams& params) {
 std::unique_ptr<SensorStream> openUnshifted(const std::string& path, const RecordingParams& params,
                                             const GivenCalibration& given) {
   std::error_code ignored;
+  if (isFilm(path) && std::filesystem::exists(path, ignored)) return std::make_unique<PlainStream>(path, params, given);
+  if (isImageFolder(path)) return std::make_unique<PlainStream>(path, params, given);
   if (isBag(path)) return std::make_unique<BagStream>(path, params, given);
   if (std::filesystem::is_directory(path, ignored)) return std::make_unique<EurocStream>(path, params, given);
   if (!std::filesystem::exists(path, ignored))
-    throw RecordingError(path + ": does not exist: give an EuRoC folder, a .rawlog, or a ROS bag (.bag .db3 .mcap)");
+    throw RecordingError(
+        path +
+        ": does not exist: give an EuRoC folder, a .rawlog, a ROS bag (.bag .db3 .mcap), a film or a folder of images");
   return std::make_unique<RawlogStream>(path, params, given);
+}
+
+/// TUM-VI publishes EuRoC's form with Kalibr's files in the folder `dso` in the place of sensor.yaml.
+RecordingParams withPublishedCalibration(const std::string& path, RecordingParams params) {
+  namespace fs = std::filesystem;
+  std::error_code ignored;
+  if (!params.calibration.empty() || !fs::is_directory(path, ignored) || isBag(path) || isImageFolder(path))
+    return params;
+  const fs::path mav0 = findMav0(path), dso = mav0 / ".." / "dso";
+  if (fs::exists(mav0 / "cam0" / "sensor.yaml", ignored)) return params;
+  for (const char* name : {"camchain.yaml", "imu_config.yaml"})
+    if (fs::exists(dso / name, ignored)) params.calibration.push_back((dso / name).lexically_normal().string());
+  return params;
 }
 
 }  // namespace
 
-std::unique_ptr<SensorStream> openStream(const std::string& path, const RecordingParams& params) {
+std::unique_ptr<SensorStream> openStream(const std::string& path, const RecordingParams& own_params) {
+  const RecordingParams params = withPublishedCalibration(path, own_params);
   const GivenCalibration given(params);
   std::unique_ptr<SensorStream> stream = openUnshifted(path, params, given);
   if (given.shift_ns() == 0) return stream;

@@ -5,6 +5,7 @@
 
 #include <cmath>
 
+#include "CalibrationForms.h"
 #include "ExactText.h"
 #include "lintel/sensing/Recording.h"
 
@@ -28,9 +29,18 @@ RawlogNote fromYaml(const YAML::Node& root, const std::string& where) {
   note.imu_noise.gyro_walk = positive(imu, "gyroscope_random_walk", where);
   note.imu_noise.accel_noise = positive(imu, "accelerometer_noise_density", where);
   note.imu_noise.accel_walk = positive(imu, "accelerometer_random_walk", where);
-  for (const auto& camera : root["cameras"])
-    note.camera_rates_hz[camera.first.as<std::string>()] = positive(camera.second, "rate_hz", where);
+  for (const auto& camera : root["cameras"]) {
+    const auto label = camera.first.as<std::string>();
+    note.camera_rates_hz[label] = positive(camera.second, "rate_hz", where);
+    if (const YAML::Node delay = camera.second["line_delay_s"])
+      note.line_delays_s[label] = checkedLineDelay_s(delay.as<double>(), where + ": line_delay_s of the note");
+  }
   return note;
+}
+
+std::string lineDelayText(const RawlogNote& note, const std::string& label) {
+  const auto delay = note.line_delays_s.find(label);
+  return delay == note.line_delays_s.end() ? "" : ", line_delay_s: " + exactText(delay->second);
 }
 
 }  // namespace
@@ -43,7 +53,7 @@ std::string formatNote(const RawlogNote& note) {
   text += "\n  accelerometer_noise_density: " + exactText(note.imu_noise.accel_noise) + "  # m/s^2/sqrt(Hz)";
   text += "\n  accelerometer_random_walk: " + exactText(note.imu_noise.accel_walk) + "  # m/s^3/sqrt(Hz)\ncameras:\n";
   for (const auto& [label, rate_hz] : note.camera_rates_hz)
-    text += "  " + label + ": {rate_hz: " + exactText(rate_hz) + "}\n";
+    text += "  " + label + ": {rate_hz: " + exactText(rate_hz) + lineDelayText(note, label) + "}\n";
   return text;
 }
 

@@ -14,6 +14,7 @@ namespace lintel {
 /// reader then takes rates from the time stamps, assumes a noise and says so.)
 struct RawlogNote {
   std::map<std::string, double> camera_rates_hz;  ///< by sensor label
+  std::map<std::string, double> line_delays_s;    ///< of those with a rolling shutter
   ImuNoise imu_noise;
   double imu_rate_hz = 0;
 };

@@ -137,6 +137,8 @@ Rig recordedRig(const Beginning& seen, const std::string& path, std::vector<Warn
     imu.rate_hz = seen.note->imu_rate_hz;
     const auto rate = seen.note->camera_rates_hz.find(camera_label);
     if (rate != seen.note->camera_rates_hz.end()) camera.rate_hz = rate->second;
+    const auto delay = seen.note->line_delays_s.find(camera_label);
+    if (delay != seen.note->line_delays_s.end()) camera.line_delay_s = delay->second;
   } else {
     warnings.push_back(
         {Fault::Calibration,

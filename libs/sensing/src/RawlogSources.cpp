@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <limits>
 
 #include "ImageFile.h"
 #include "RawlogTime.h"
@@ -49,6 +50,26 @@ std::shared_ptr<Observation> stamped(const std::string& label, std::int64_t t_ns
   auto observation = Observation::Create();
   observation->sensorLabel = label;
   observation->timestamp = toRawlogTime(t_ns);
+  return observation;
+}
+
+void fill(mrpt::img::CImage& image, const GrayImage& gray) {
+  image.resize(static_cast<std::size_t>(gray.width), static_cast<std::size_t>(gray.height), mrpt::img::CH_GRAY);
+  for (int row = 0; row < gray.height; ++row)
+    std::copy_n(gray.pixels.data() + static_cast<std::ptrdiff_t>(row) * gray.width, gray.width,
+                image.ptrLine<std::uint8_t>(static_cast<unsigned>(row)));
+}
+
+CObservation::Ptr observationOf(const ImuSample& sample, const std::string& label, const mrpt::poses::CPose3D& pose) {
+  using namespace mrpt::obs;
+  auto observation = stamped<CObservationIMU>(label, sample.t_ns);
+  observation->sensorPose = pose;
+  observation->set(IMU_WX, sample.gyro.x());
+  observation->set(IMU_WY, sample.gyro.y());
+  observation->set(IMU_WZ, sample.gyro.z());
+  observation->set(IMU_X_ACC, sample.accel.x());
+  observation->set(IMU_Y_ACC, sample.accel.y());
+  observation->set(IMU_Z_ACC, sample.accel.z());
   return observation;
 }
 
@@ -94,13 +115,7 @@ class ImageSource final : public RawlogSource {
     image.setExternalStorage(name);
   }
 
-  void embed(mrpt::img::CImage& image) const {
-    const GrayImage gray = readGrayImage(entry_.path);
-    image.resize(static_cast<std::size_t>(gray.width), static_cast<std::size_t>(gray.height), mrpt::img::CH_GRAY);
-    for (int row = 0; row < gray.height; ++row)
-      std::copy_n(gray.pixels.data() + static_cast<std::ptrdiff_t>(row) * gray.width, gray.width,
-                  image.ptrLine<std::uint8_t>(static_cast<unsigned>(row)));
-  }
+  void embed(mrpt::img::CImage& image) const { fill(image, readGrayImage(entry_.path)); }
 
   EurocImageList list_;
   std::string label_;
@@ -123,23 +138,77 @@ class ImuSource final : public RawlogSource {
 
   std::int64_t t_ns() const override { return sample_.t_ns; }
 
-  CObservation::Ptr make(const WarningSink&) override {
-    using namespace mrpt::obs;
-    auto observation = stamped<CObservationIMU>(label_, sample_.t_ns);
-    observation->sensorPose = pose_;
-    observation->set(IMU_WX, sample_.gyro.x());
-    observation->set(IMU_WY, sample_.gyro.y());
-    observation->set(IMU_WZ, sample_.gyro.z());
-    observation->set(IMU_X_ACC, sample_.accel.x());
-    observation->set(IMU_Y_ACC, sample_.accel.y());
-    observation->set(IMU_Z_ACC, sample_.accel.z());
-    return observation;
-  }
+  CObservation::Ptr make(const WarningSink&) override { return observationOf(sample_, label_, pose_); }
 
  private:
   EurocImuList list_;
   std::string label_;
   mrpt::poses::CPose3D pose_;
+  ImuSample sample_;
+};
+
+class StreamImageSource final : public RawlogSource {
+ public:
+  StreamImageSource(std::shared_ptr<SensorStream> stream, std::string label, std::string folder)
+      : stream_(std::move(stream)),
+        label_(std::move(label)),
+        folder_(std::move(folder)),
+        params_(toMrpt(stream_->rig().camera, label_)),
+        pose_(toMrpt(stream_->rig().T_b_c)) {}
+
+  bool advance(const WarningSink& warn) override {
+    auto next = stream_->nextFrame(warn);
+    if (next) frame_ = std::move(*next);
+    return next.has_value();
+  }
+
+  std::int64_t t_ns() const override { return frame_.t_ns; }
+
+  CObservation::Ptr make(const WarningSink& warn) override {
+    auto observation = stamped<mrpt::obs::CObservationImage>(label_, frame_.t_ns);
+    observation->cameraParams = params_;
+    observation->cameraPose = pose_;
+    try {
+      fill(observation->image, frame_.decode());
+    } catch (const ImageFault& fault) {
+      warn(Fault::Image, std::string(fault.what()) + ": left out");
+      return nullptr;
+    }
+    if (!folder_.empty()) store(observation->image);
+    return observation;
+  }
+
+ private:
+  void store(mrpt::img::CImage& image) const {
+    const std::string name = label_ + "_" + std::to_string(frame_.t_ns) + ".png";
+    if (!image.saveToFile((fs::path(folder_) / name).string()))
+      throw std::runtime_error(folder_ + "/" + name + ": cannot be written: is the disk full?");
+    image = mrpt::img::CImage();
+    image.setExternalStorage(name);
+  }
+
+  std::shared_ptr<SensorStream> stream_;
+  std::string label_, folder_;
+  mrpt::img::TCamera params_;
+  mrpt::poses::CPose3D pose_;
+  FrameRef frame_;
+};
+
+class StreamImuSource final : public RawlogSource {
+ public:
+  explicit StreamImuSource(std::shared_ptr<SensorStream> stream) : stream_(std::move(stream)) {}
+
+  bool advance(const WarningSink& warn) override {
+    const auto next = stream_->nextImu(std::numeric_limits<std::int64_t>::max() / 2, warn);
+    if (next) sample_ = *next;
+    return next.has_value();
+  }
+
+  std::int64_t t_ns() const override { return sample_.t_ns; }
+  CObservation::Ptr make(const WarningSink&) override { return observationOf(sample_, "imu0", {}); }
+
+ private:
+  std::shared_ptr<SensorStream> stream_;
   ImuSample sample_;
 };
 
@@ -188,6 +257,15 @@ std::unique_ptr<RawlogSource> makeImageSource(const std::string& folder, const s
 
 std::unique_ptr<RawlogSource> makeImuSource(const std::string& folder, const std::string& label, const EurocImu& imu) {
   return std::make_unique<ImuSource>(folder, label, imu);
+}
+
+std::unique_ptr<RawlogSource> makeImageSource(const std::shared_ptr<SensorStream>& stream, const std::string& label,
+                                              const std::string& folder) {
+  return std::make_unique<StreamImageSource>(stream, label, folder);
+}
+
+std::unique_ptr<RawlogSource> makeImuSource(const std::shared_ptr<SensorStream>& stream) {
+  return std::make_unique<StreamImuSource>(stream);
 }
 
 std::unique_ptr<RawlogSource> makeGroundtruthSource(const std::string& csv) {

@@ -9,6 +9,7 @@
 #include "EurocFolder.h"
 #include "EurocYaml.h"
 #include "ImagePlacer.h"
+#include "SensorStream.h"
 
 namespace mrpt::obs {
 class CObservation;
@@ -36,6 +37,13 @@ std::unique_ptr<RawlogSource> makeImageSource(const std::string& folder, const s
 
 /// Samples of `folder` (…/mav0/imu0).
 std::unique_ptr<RawlogSource> makeImuSource(const std::string& folder, const std::string& label, const EurocImu& imu);
+
+/// Images of any recording, decoded: PNGs in `folder`, or embedded if that is empty.
+std::unique_ptr<RawlogSource> makeImageSource(const std::shared_ptr<SensorStream>& stream, const std::string& label,
+                                              const std::string& folder);
+
+/// Samples of any recording, labelled imu0.
+std::unique_ptr<RawlogSource> makeImuSource(const std::shared_ptr<SensorStream>& stream);
 
 /// True poses of `csv` (EuRoC states), labelled "groundtruth".
 std::unique_ptr<RawlogSource> makeGroundtruthSource(const std::string& csv);

@@ -10,6 +10,7 @@
 
 #include "Bag.h"
 #include "EurocFolder.h"
+#include "PlainStream.h"
 #include "RawlogFile.h"
 #include "lintel/sensing/Recording.h"
 
@@ -67,9 +68,21 @@ std::vector<RecordedSensor> sensorsOfRawlog(const std::string& path) {
   return sensors;
 }
 
+std::vector<RecordedSensor> sensorsOfTables(const std::string& path, const RecordingParams& params) {
+  const PlainTables tables = plainTables(path, params);
+  Stamps images, samples;
+  for (const TimedImage& image : readImageTimes(tables.times)) images.add(image.t_ns);
+  const ImuSource imu = openImuTables(tables.imu);
+  while (const auto sample = imu([](Fault, const std::string&) {})) samples.add(sample->t_ns);
+  return {
+      {fs::path(tables.times).filename().string(), isFilm(path) ? "film" : "images", images.count, images.rate_hz()},
+      {fs::path(tables.imu).filename().string(), "IMU", samples.count, samples.rate_hz()}};
+}
+
 }  // namespace
 
-std::vector<RecordedSensor> recordedSensors(const std::string& path) {
+std::vector<RecordedSensor> recordedSensors(const std::string& path, const RecordingParams& params) {
+  if (isFilm(path) || isImageFolder(path)) return sensorsOfTables(path, params);
   if (isBag(path)) return sensorsOfBag(path);
   return fs::is_directory(path) ? sensorsOfFolder(path) : sensorsOfRawlog(path);
 }

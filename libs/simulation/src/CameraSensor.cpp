@@ -46,7 +46,12 @@ double CameraSensor::gain(double t_s) const {
 
 Radiance CameraSensor::expose(const Trajectory& trajectory, double t_s) const {
   const auto poseAt = [&](double t) { return trajectory.at(t).T_w_b * T_b_c_; };
-  if (params_.exposure_time_s <= 0) return renderer_.render(poseAt(t_s));
+  const auto renderAt = [&](double t, const EdgeSampling& edges) {
+    if (params_.line_delay_s == 0) return renderer_.render(poseAt(t), edges);
+    return renderer_.render(
+        [&](int row) { return poseAt(t + (row - 0.5 * (camera_.height - 1)) * params_.line_delay_s); }, edges);
+  };
+  if (params_.exposure_time_s <= 0) return renderAt(t_s, {});
   // the motion in steps, judged by rotation and by translation at 2 m
   const KinematicState state = trajectory.at(t_s);
   const double motion_px =
@@ -56,7 +61,7 @@ Radiance CameraSensor::expose(const Trajectory& trajectory, double t_s) const {
   for (int i = 0; i < count; ++i) {
     // two exposures share the rays of one: their grids complement each other
     const EdgeSampling edges = count == 1 ? EdgeSampling{} : i % 2 == 0 ? EdgeSampling{4, 2} : EdgeSampling{2, 4};
-    const Radiance part = renderer_.render(poseAt(t_s + params_.exposure_time_s * ((i + 0.5) / count - 0.5)), edges);
+    const Radiance part = renderAt(t_s + params_.exposure_time_s * ((i + 0.5) / count - 0.5), edges);
     if (sum.empty()) sum.assign(part.size(), 0.0f);
     for (std::size_t k = 0; k < part.size(); ++k) sum[k] += part[k] / static_cast<float>(count);
   }

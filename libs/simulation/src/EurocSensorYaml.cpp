@@ -55,6 +55,7 @@ std::string cameraYaml(const Rig& rig) {
       << extrinsics(rig.T_b_c) << "\n# Camera specific definitions.\nrate_hz: " << rig.camera_rate_hz
       << "\nresolution: [" << c.width << ", " << c.height << "]\n"
       << lensText(c);
+  if (rig.line_delay_s != 0) out << "line_delay_s: " << rig.line_delay_s << " #from row to row; stamp: middle row\n";
   return out.str();
 }
 

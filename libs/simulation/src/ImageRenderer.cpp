@@ -41,16 +41,20 @@ class ImageRenderer::Impl {
     }
   }
 
-  Radiance render(const Pose& T_w_c, const EdgeSampling& edges) const {
+  Radiance render(const std::function<Pose(int row)>& T_w_c, const EdgeSampling& edges) const {
     const int width = pixels_.width(), height = pixels_.height();
-    const View view{T_w_c.p.cast<float>(), T_w_c.R().cast<float>()};
+    std::vector<View> views;
+    for (int y = 0; y < height; ++y) {
+      const Pose pose = T_w_c(y);
+      views.push_back({pose.p.cast<float>(), pose.R().cast<float>()});
+    }
     Radiance image(static_cast<std::size_t>(width) * height);
     std::vector<int> patch_of(image.size());
-    for (int y = 0; y < height; ++y) castRow(view, y, image, patch_of);
+    for (int y = 0; y < height; ++y) castRow(views[static_cast<std::size_t>(y)], y, image, patch_of);
     for (int y = 0; y < height; ++y) {
       for (int x = 0; x < width; ++x) {
         if (surfacesMeet(patch_of, x, y))
-          image[static_cast<std::size_t>(y) * width + x] = supersample(view, x, y, edges);
+          image[static_cast<std::size_t>(y) * width + x] = supersample(views[static_cast<std::size_t>(y)], x, y, edges);
       }
     }
     return image;
@@ -156,6 +160,9 @@ class ImageRenderer::Impl {
 ImageRenderer::ImageRenderer(const Scene& scene, const Camera& camera) : impl_(std::make_unique<Impl>(scene, camera)) {}
 ImageRenderer::~ImageRenderer() = default;
 Radiance ImageRenderer::render(const Pose& T_w_c, const EdgeSampling& edges) const {
+  return impl_->render([&](int) { return T_w_c; }, edges);
+}
+Radiance ImageRenderer::render(const std::function<Pose(int row)>& T_w_c, const EdgeSampling& edges) const {
   return impl_->render(T_w_c, edges);
 }
 std::vector<bool> ImageRenderer::visibleLines(const Pose& T_w_c) const { return impl_->visibleLines(T_w_c); }

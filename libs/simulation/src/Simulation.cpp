@@ -27,6 +27,19 @@ bool inGap(double t_s, double every_s, double gap_s) {
   return every_s > 0 && t_s >= every_s && std::fmod(t_s, every_s) < gap_s;
 }
 
+/// Another sensor behind the same lens: as wide a view from left to right.
+void resize(Camera& camera, int width, int height) {
+  if (std::min(width, height) < 64 || std::max(width, height) > 8192)
+    throw std::invalid_argument("images are 64 to 8192 pixels wide and high");
+  const double scale = static_cast<double>(width) / camera.width;
+  camera.fx *= scale;
+  camera.fy *= scale;
+  camera.cx = 0.5 * (width - 1) + scale * (camera.cx - 0.5 * (camera.width - 1));
+  camera.cy = 0.5 * (height - 1) + scale * (camera.cy - 0.5 * (camera.height - 1));
+  camera.width = width;
+  camera.height = height;
+}
+
 Rig rigOf(const SimulationParams& params) {
   Rig rig = eurocRig();
   if (params.lens == "none") {
@@ -36,6 +49,11 @@ Rig rigOf(const SimulationParams& params) {
   } else {
     throw std::invalid_argument("the lens " + params.lens + " is not known");
   }
+  if (params.width > 0) resize(rig.camera, params.width, params.height);
+  if (!(params.rate_hz >= 1 && params.rate_hz <= rig.imu_rate_hz))
+    throw std::invalid_argument("images come at 1 to " + std::to_string(std::lround(rig.imu_rate_hz)) + " Hz");
+  rig.camera_rate_hz = params.rate_hz;
+  rig.line_delay_s = params.camera.line_delay_s;
   return rig;
 }
 
@@ -101,9 +119,8 @@ class Simulation::Impl {
   }
 
   std::int64_t stamp(std::size_t frame) const {
-    const auto sample = static_cast<std::int64_t>(std::llround(kLeadIn_s * rig_.imu_rate_hz)) +
-                        static_cast<std::int64_t>(frame) * imuPerFrame(rig_);
-    return kSimulationStart_ns + sample * imuStep_ns(rig_);
+    return kSimulationStart_ns + std::llround(kLeadIn_s * rig_.imu_rate_hz) * imuStep_ns(rig_) +
+           std::llround(1e9 * static_cast<double>(frame) / rig_.camera_rate_hz);
   }
 
   SimulatedImu writeInertial(const EurocWriter& writer) const {

@@ -60,5 +60,19 @@ TEST(ImageRenderer, TwoRendersAreEqual) {
   EXPECT_EQ(renderer.render(Pose{}), renderer.render(Pose{}));
 }
 
+TEST(ImageRenderer, RowsHaveTheirOwnPoses) {
+  const Camera camera = eurocRig().camera;
+  const ImageRenderer renderer(squareBeforeWall(), camera);
+  const Pose upper, lower{Eigen::Quaterniond::Identity(), {0.1, 0, 0}};
+  const Radiance both = renderer.render([&](int row) { return row < 240 ? upper : lower; });
+  const Radiance of_upper = renderer.render(upper), of_lower = renderer.render(lower);
+  const auto row = [&](const Radiance& image, int y) {
+    return Radiance(image.begin() + y * camera.width, image.begin() + (y + 1) * camera.width);
+  };
+  EXPECT_EQ(row(both, 230), row(of_upper, 230));
+  EXPECT_EQ(row(both, 250), row(of_lower, 250));
+  EXPECT_NE(row(both, 250), row(of_upper, 250));
+}
+
 }  // namespace
 }  // namespace lintel

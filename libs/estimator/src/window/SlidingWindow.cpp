@@ -48,13 +48,13 @@ void SlidingWindow::addFrame(WindowFrame frame, const FrameTracks& tracks) {
   for (const PointObservation& o : tracks.points) {
     PointTrack& track = points[o.id];
     track.id = o.id;
-    track.sightings.push_back({frame.id, makeObservation(camera_, o.px, linearised_at_), o.px});
+    track.sightings.push_back({frame.id, makeObservation(camera_, o.px, linearised_at_), o.px, o.px});
   }
   for (const LineObservation& o : tracks.lines) {
     LineTrack& track = lines[o.id];
     track.id = o.id;
     const auto [start, end] = makeLineEnds(camera_, o.start_px, o.end_px, linearised_at_);
-    track.sightings.push_back({frame.id, start, end, o.start_px, o.end_px, o.sigma_px});
+    track.sightings.push_back({frame.id, start, end, o.start_px, o.end_px, o.sigma_px, o.start_px, o.end_px});
   }
   frames.push_back(std::move(frame));
 }

@@ -22,6 +22,7 @@ struct Rig {
   Camera camera;
   Pose T_b_c;  ///< camera in the body (IMU) frame
   double camera_rate_hz = 20;
+  double line_delay_s = 0;  ///< rolling shutter: from row to row; a frame's time is that of the middle row
   ImuNoise imu_noise;
   double imu_rate_hz = 200;
   std::shared_ptr<const GrayImage> mask;  ///< of the camera's size, black where images are not used; null: nowhere

@@ -49,7 +49,8 @@ struct WindowFrame {
 struct PointSighting {
   FrameId frame = 0;
   RayObservation observation;
-  Eigen::Vector2d px = Eigen::Vector2d::Zero();
+  Eigen::Vector2d px = Eigen::Vector2d::Zero();       ///< at the frame's time
+  Eigen::Vector2d seen_px = Eigen::Vector2d::Zero();  ///< in the image: at the time of its row (RollingShutter.h)
 };
 
 struct LineSighting {
@@ -57,6 +58,7 @@ struct LineSighting {
   LineEnd start, end;
   Eigen::Vector2d start_px = Eigen::Vector2d::Zero(), end_px = Eigen::Vector2d::Zero();
   double sigma_px = 1;
+  Eigen::Vector2d seen_start_px = Eigen::Vector2d::Zero(), seen_end_px = Eigen::Vector2d::Zero();
 };
 
 /// A point: homogeneous, world axes, relative to `origin_w` (PointFactor.h).
@@ -143,6 +145,9 @@ class SlidingWindow {
 
   /// Linearises the observations about the present correction, when it has left what they are linear within.
   void relinearise();
+
+  /// The correction about which the observations are linear.
+  const CorrectionBlock& linearisedAt() const { return linearised_at_; }
 
   /// Forgets a frame and its sightings (keeping them in `former` when it was a keyframe). Tracks keep their estimate.
   /// Does not touch priors.

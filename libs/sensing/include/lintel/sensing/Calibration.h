@@ -18,6 +18,7 @@ struct CameraCalibration {
   std::optional<Pose> T_b_c;     ///< canonical; absent in files of a camera alone
   double time_shift_s = 0;       ///< stamp on the IMU's clock = stamp of the image + this
   std::optional<double> rate_hz;
+  std::optional<double> line_delay_s;  ///< of a rolling shutter (Rig.h)
 };
 
 /// What calibration files say.

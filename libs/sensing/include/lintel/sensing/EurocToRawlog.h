@@ -8,11 +8,14 @@
 #include <string>
 #include <vector>
 
+#include "lintel/sensing/Recording.h"
+
 namespace lintel {
 
-/// How to write an EuRoC folder as a rawlog.
+/// How to write a recording as a rawlog.
 struct EurocToRawlogParams {
   std::vector<std::string> cameras;  ///< folders below mav0, also the sensor labels; empty = every camN there is
+  RecordingParams recording;         ///< calibration, sensors and tables of what is not an EuRoC folder
   bool embed = false;                ///< images into the rawlog; else as files in NAME_Images beside it
   bool copy = false;                 ///< copy external images; else link them (hard, else symbolic, else copied)
   int compress_level = 5;            ///< gzip 1 to 9; 0 = plain
@@ -37,6 +40,8 @@ using EurocToRawlogProgress = std::function<void(std::size_t done, std::size_t t
 /// CObservationRobotPose labelled "groundtruth", and at the head a CObservationComment with the IMU's noise. Nothing
 /// appears under the final names before all is written. Times are cut to the rawlog's 100 ns, as openRecording does
 /// with a folder: both give the same stream. Throws RecordingError (input) or std::runtime_error (output).
+/// Any other recording that openRecording() takes, and a folder with a calibration of its own in `params.recording`,
+/// gives one camera, labelled cam0, and imu0; its images are decoded and stored as PNGs.
 EurocToRawlogSummary eurocToRawlog(const std::string& folder, const std::string& rawlog,
                                    const EurocToRawlogParams& params = {}, const EurocToRawlogProgress& progress = {});
 

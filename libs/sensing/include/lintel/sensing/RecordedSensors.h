@@ -5,6 +5,8 @@
 #include <string>
 #include <vector>
 
+#include "lintel/sensing/Recording.h"
+
 namespace lintel {
 
 /// One sensor's data in a recording.
@@ -16,7 +18,7 @@ struct RecordedSensor {
 };
 
 /// Everything that a recording holds, by label. Reads folders and rawlogs to their ends (or to where they are damaged).
-/// Throws RecordingError.
-std::vector<RecordedSensor> recordedSensors(const std::string& path);
+/// `params` name the tables of a film or a folder of images. Throws RecordingError.
+std::vector<RecordedSensor> recordedSensors(const std::string& path, const RecordingParams& params = {});
 
 }  // namespace lintel

@@ -26,6 +26,8 @@ struct RecordingParams {
   std::string camera;                    ///< folder or sensor label; empty = cam0, in a rawlog the alphabetically first
   std::string imu;                       ///< folder or sensor label; empty = imu0, in a rawlog the alphabetically first
   std::vector<std::string> calibration;  ///< files that replace the recording's own calibration (Calibration.h)
+  std::string times_file;                ///< of a film or a folder of images; empty = the one beside it (PlainStream.h)
+  std::string imu_file;                  ///< the same of the IMU's samples; GYRO,ACCEL where they are two
   std::string mask;                      ///< image of the camera's size, black where images are not used; empty = none
   std::size_t frames_ahead = 8;          ///< frames decoded ahead on another thread; 0 = decode when asked
 };
@@ -49,7 +51,8 @@ class Recording {
   virtual std::vector<std::string> warnings() const = 0;
 };
 
-/// Opens an EuRoC folder (`…/mav0` or its parent) or a `.rawlog`. Throws RecordingError.
+/// Opens an EuRoC folder (`…/mav0` or its parent), a `.rawlog`, a ROS bag, a film, or a folder of images. Throws
+/// RecordingError.
 std::unique_ptr<Recording> openRecording(const std::string& path, const RecordingParams& params = {});
 
 }  // namespace lintel

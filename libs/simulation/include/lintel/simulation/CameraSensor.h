@@ -14,6 +14,7 @@ struct CameraSensorParams {
   double noise =
       1;  ///< scales read noise (1 grey level) and shot noise (0.01 grey levels of variance per level); 0 = none
   double exposure_time_s = 0;  ///< motion blur; 0 = none. Centred on the frame's stamp
+  double line_delay_s = 0;     ///< rolling shutter: from row to row; the stamp is that of the middle row [s]
   double exposure_change = 0;  ///< slow changes of the gain, standard deviation of its logarithm
   double vignetting = 0;       ///< darkening in the corners, 0 to 1
   std::uint64_t seed = 1;
@@ -22,6 +23,7 @@ struct CameraSensorParams {
   void fields(F&& field) {
     field("noise", noise);
     field("exposure_time_s", exposure_time_s);
+    field("line_delay_s", line_delay_s);
     field("exposure_change", exposure_change);
     field("vignetting", vignetting);
     field("seed", seed);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <functional>
 #include <memory>
 #include <vector>
 
@@ -26,6 +27,8 @@ class ImageRenderer {
   ~ImageRenderer();
 
   Radiance render(const Pose& T_w_c, const EdgeSampling& edges = {}) const;
+  /// With a pose for each row, as a rolling shutter sees.
+  Radiance render(const std::function<Pose(int row)>& T_w_c, const EdgeSampling& edges = {}) const;
 
   /// Per line of the scene: whether at least two of five points along it are in the image and not hidden.
   std::vector<bool> visibleLines(const Pose& T_w_c) const;

@@ -30,6 +30,8 @@ struct SimulationParams {
   std::uint64_t seed = 1;
   int threads = 1;
   std::string lens = "radial-tangential";  ///< none, or a name of LensNames.h
+  int width = 0, height = 0;               ///< of the images, the width's field of view kept; 0: 752 x 480
+  double rate_hz = 20;                     ///< of the images
   ImuSimulatorParams imu;                  ///< its seed is derived from `seed`
   CameraSensorParams camera;               ///< its seed is derived from `seed`
   double camera_delay_s = 0;               ///< images show what was so much before their stamps [s]
