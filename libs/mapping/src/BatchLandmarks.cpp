@@ -3,7 +3,9 @@
 #include <algorithm>
 
 #include "BatchProblem.h"
+#include "CarriedView.h"
 #include "KeyframeCameras.h"
+#include "lintel/geometry/Rotation.h"
 
 namespace lintel {
 
@@ -27,6 +29,31 @@ class UnitLength final : public ceres::SizedCostFunction<2, kPointSize> {
   }
 };
 
+/// The part of a SharedDirectionFactor's residual across the group's direction, in two coordinates: along that
+/// direction it has none. All residuals of landmarks then have two rows, for which Ceres has code of fixed size.
+class FlatDirectionFactor final : public ceres::SizedCostFunction<2, kLineSize, kDirectionSize> {
+ public:
+  FlatDirectionFactor(double weight, const Eigen::Vector3d& direction_w)
+      : factor_(weight), across_(tangentBasis(direction_w).transpose()) {}
+  bool Evaluate(double const* const* parameters, double* residuals, double** jacobians) const override {
+    Eigen::Vector3d r;
+    Eigen::Matrix<double, 3, kLineSize, Eigen::RowMajor> by_line;
+    Eigen::Matrix<double, 3, kDirectionSize, Eigen::RowMajor> by_direction;
+    double* all[] = {by_line.data(), by_direction.data()};
+    factor_.Evaluate(parameters, r.data(), jacobians ? all : nullptr);
+    Eigen::Vector2d::Map(residuals) = across_ * r;
+    if (jacobians && jacobians[0])
+      Eigen::Map<Eigen::Matrix<double, 2, kLineSize, Eigen::RowMajor>>{jacobians[0]} = across_ * by_line;
+    if (jacobians && jacobians[1])
+      Eigen::Map<Eigen::Matrix<double, 2, kDirectionSize, Eigen::RowMajor>>{jacobians[1]} = across_ * by_direction;
+    return true;
+  }
+
+ private:
+  SharedDirectionFactor factor_;
+  Eigen::Matrix<double, 2, 3> across_;
+};
+
 /// At most `most` of the views that agree, spread evenly over all: a landmark couples every two keyframes that have a
 /// view here, and the hundredth view of a track adds little information.
 template <class View>
@@ -41,9 +68,23 @@ std::vector<const View*> spreadViews(const std::vector<View>& views, std::size_t
 
 }  // namespace
 
+template <class Target>
+void BatchProblem::addView(ImageFactor<Target>& factor, ceres::LossFunction& loss, std::size_t keyframe,
+                           double* landmark) {
+  if (isAnchor(keyframe)) {
+    problem_->AddResidualBlock(&factor, &loss, at(poseAt(keyframe)), at(extrinsics_at_), at(correction_at_), landmark);
+    return;
+  }
+  carried_views_.push_back({&factor, &loss, keyframe, landmark});
+  const auto [a, b] = anchors_[keyframe];
+  own_factors_.push_back(std::make_unique<CarriedView<Target>>(factor, carriage(keyframe)));
+  problem_->AddResidualBlock(own_factors_.back().get(), &loss, at(poseAt(a)), at(extrinsics_at_), at(correction_at_),
+                             landmark, at(poseAt(b)));
+}
+
 void BatchProblem::addPoints() {
-  priors_.push_back(std::make_unique<UnitLength>());
-  ceres::CostFunction* unit_length = priors_.back().get();
+  own_factors_.push_back(std::make_unique<UnitLength>());
+  ceres::CostFunction* unit_length = own_factors_.back().get();
   for (std::size_t i = 0; i < points_.size(); ++i) {
     const PointRecord& point = material_.points[points_[i]];
     const Eigen::Vector3d origin_w = originOf(point.views.front().keyframe);
@@ -53,8 +94,7 @@ void BatchProblem::addPoints() {
       const auto k = static_cast<std::size_t>(keyframe_places_[v.keyframe]);
       point_factors_.emplace_back(v.px, calibrated_.camera, motionOf(material_.keyframes[k]), origin_w,
                                   estimator_.factors.point_sigma_px);
-      problem_->AddResidualBlock(&point_factors_.back(), &point_loss_, at(poseAt(k)), at(extrinsics_at_),
-                                 at(correction_at_), at(points_at_ + i * kPointSize));
+      addView(point_factors_.back(), point_loss_, k, at(points_at_ + i * kPointSize));
     }
   }
 }
@@ -70,8 +110,7 @@ void BatchProblem::addLines() {
       const auto [start, end] = makeLineEnds(calibrated_.camera, v.start_px, v.end_px, correction);
       line_factors_.emplace_back(start, end, motionOf(material_.keyframes[k]), origin_w,
                                  estimator_.factors.line_sigma_px * std::max(0.1, static_cast<double>(v.sigma_px)));
-      problem_->AddResidualBlock(&line_factors_.back(), &line_loss_, at(poseAt(k)), at(extrinsics_at_),
-                                 at(correction_at_), at(lines_at_ + i * kLineSize));
+      addView(line_factors_.back(), line_loss_, k, at(lines_at_ + i * kLineSize));
     }
   }
 }
@@ -82,8 +121,8 @@ void BatchProblem::addGroups() {
       const auto place = std::lower_bound(lines_.begin(), lines_.end(), line);
       if (place == lines_.end() || *place != line) continue;
       const auto i = static_cast<std::size_t>(place - lines_.begin());
-      structural_factors_.emplace_back(1 / groups_[g].sigma_rad);
-      problem_->AddResidualBlock(&structural_factors_.back(), &structural_loss_, at(lines_at_ + i * kLineSize),
+      own_factors_.push_back(std::make_unique<FlatDirectionFactor>(1 / groups_[g].sigma_rad, groups_[g].direction_w));
+      problem_->AddResidualBlock(own_factors_.back().get(), &structural_loss_, at(lines_at_ + i * kLineSize),
                                  at(directions_at_ + g * kDirectionSize));
     }
 }

@@ -14,19 +14,6 @@ namespace lintel {
 
 namespace {
 
-ceres::Problem::Options problemOptions() {
-  ceres::Problem::Options o;
-  o.cost_function_ownership = ceres::DO_NOT_TAKE_OWNERSHIP;
-  o.loss_function_ownership = ceres::DO_NOT_TAKE_OWNERSHIP;
-  o.manifold_ownership = ceres::DO_NOT_TAKE_OWNERSHIP;
-  o.disable_all_safety_checks = true;
-  return o;
-}
-
-StateManifold* poseManifold() {
-  static PoseManifold manifold;
-  return &manifold;
-}
 StateManifold* lineManifold() {
   static LineManifold manifold;
   return &manifold;
@@ -57,12 +44,28 @@ class IterationCallback : public ceres::IterationCallback {
 
 }  // namespace
 
+ceres::Problem::Options BatchProblem::problemOptions() {
+  ceres::Problem::Options o;
+  o.cost_function_ownership = ceres::DO_NOT_TAKE_OWNERSHIP;
+  o.loss_function_ownership = ceres::DO_NOT_TAKE_OWNERSHIP;
+  o.manifold_ownership = ceres::DO_NOT_TAKE_OWNERSHIP;
+  o.disable_all_safety_checks = true;
+  return o;
+}
+
+StateManifold* BatchProblem::poseManifold() {
+  static PoseManifold manifold;
+  return &manifold;
+}
+
 BatchProblem::BatchProblem(const Rig& calibrated, const EstimatorParams& estimator, MapMaterial& material,
-                           const std::vector<bool>& use_point, const std::vector<bool>& use_line,
-                           std::size_t most_views, const std::vector<ParallelLines>& groups)
+                           const std::vector<Anchors>& anchors, const std::vector<bool>& use_point,
+                           const std::vector<bool>& use_line, std::size_t most_views,
+                           const std::vector<ParallelLines>& groups)
     : calibrated_(calibrated),
       estimator_(estimator),
       material_(material),
+      anchors_(anchors),
       most_views_(most_views),
       groups_(groups),
       point_loss_(estimator.factors.point_loss_width),
@@ -127,6 +130,7 @@ void BatchProblem::placeBlocks() {
     const RetiredKeyframe& keyframe = material_.keyframes[k];
     Eigen::Map<PoseBlock>(at(poseAt(k))) = toBlock(keyframe.T_w_b);
     Eigen::Map<MotionBlock>(at(motionAt(k))) << keyframe.v_w_b, keyframe.bias.gyro, keyframe.bias.accel;
+    if (!isAnchor(k)) continue;
     problem_->AddParameterBlock(at(poseAt(k)), kPoseSize, poseManifold());
     problem_->AddParameterBlock(at(motionAt(k)), kMotionSize);
   }
@@ -136,7 +140,7 @@ void BatchProblem::addPriors() {
   const auto add = [&](std::unique_ptr<ceres::CostFunction> cost, std::size_t block,
                        ceres::LossFunction* loss = nullptr) {
     problem_->AddResidualBlock(cost.get(), loss, at(block));
-    priors_.push_back(std::move(cost));
+    own_factors_.push_back(std::move(cost));
   };
   const auto addParts = [&](PriorParts parts, std::size_t block) {
     for (PriorPart& part : parts) add(std::move(part.factor), block, part.refined ? &calibration_loss_ : nullptr);
@@ -145,23 +149,12 @@ void BatchProblem::addPriors() {
   addParts(makeCorrectionPriors(estimator_.calibration), correction_at_);
   for (std::size_t k = 0; k < material_.keyframes.size(); ++k) {
     const RetiredKeyframe& keyframe = material_.keyframes[k];
+    if (!isAnchor(k)) continue;
     if (keyframe.at_rest) add(makeRestPrior(estimator_.rest_velocity_sigma), motionAt(k));
     if (keyframe.imu && k > 0) continue;
     // the first of a run: its place and yaw are free to choose, its biases are known about
     add(makeGaugePrior(toBlock(keyframe.T_w_b)), poseAt(k));
     add(makeBiasPrior(estimator_.initializer), motionAt(k));
-  }
-}
-
-void BatchProblem::addImu() {
-  for (std::size_t k = 1; k < material_.keyframes.size(); ++k) {
-    const RetiredKeyframe& keyframe = material_.keyframes[k];
-    if (!keyframe.imu || keyframe.imu->dt_s() <= 0) continue;
-    auto imu = std::make_shared<Preintegration>(*keyframe.imu);
-    imu->repropagate(material_.keyframes[k - 1].bias);
-    imu_factors_.emplace_back(k, std::make_unique<ImuFactor>(imu));
-    problem_->AddResidualBlock(imu_factors_.back().second.get(), nullptr, at(poseAt(k - 1)), at(motionAt(k - 1)),
-                               at(poseAt(k)), at(motionAt(k)));
   }
 }
 
@@ -174,6 +167,7 @@ BatchProblem::Summary BatchProblem::solve(int max_iterations, double tolerance, 
   for (std::size_t g = 0; g < groups_.size(); ++g)
     ordering->AddElementToGroup(at(directions_at_ + g * kDirectionSize), 1);
   for (std::size_t k = 0; k < material_.keyframes.size(); ++k) {
+    if (!isAnchor(k)) continue;
     ordering->AddElementToGroup(at(poseAt(k)), 1);
     ordering->AddElementToGroup(at(motionAt(k)), 1);
   }
@@ -183,6 +177,9 @@ BatchProblem::Summary BatchProblem::solve(int max_iterations, double tolerance, 
   options.max_num_iterations = max_iterations;
   options.function_tolerance = tolerance;
   options.num_threads = 1;
+  // The scale hardly shows in a single residual: damping relative to those would hold it back for many iterations.
+  options.initial_trust_region_radius = 1e8;
+  options.num_threads = 1;
   // A landmark with a wrong sighting may raise the cost of a step, and a refused step leaves weakly observed
   // directions such as the scale unchanged: a few steps may raise the cost if it then falls below its former value.
   options.use_nonmonotonic_steps = true;
@@ -191,6 +188,7 @@ BatchProblem::Summary BatchProblem::solve(int max_iterations, double tolerance, 
   options.callbacks.push_back(&callback);
   ceres::Solver::Summary summary;
   ceres::Solve(options, problem_.get(), &summary);
+  settle();
   return {summary.IsSolutionUsable(), static_cast<int>(summary.iterations.size()),
           static_cast<std::size_t>(summary.num_residuals), summary.initial_cost, summary.final_cost};
 }
@@ -207,18 +205,6 @@ void BatchProblem::writeBack() {
     keyframe.v_w_b = velocityOf(at(motionAt(k)));
     keyframe.bias = biasOf(at(motionAt(k)));
   }
-}
-
-double BatchProblem::imuError() const {
-  double sum = 0;
-  for (const auto& [k, factor] : imu_factors_) {
-    const double* blocks[] = {values_.data() + poseAt(k - 1), values_.data() + motionAt(k - 1),
-                              values_.data() + poseAt(k), values_.data() + motionAt(k)};
-    Eigen::Matrix<double, 15, 1> r;
-    factor->Evaluate(blocks, r.data(), nullptr);
-    sum += r.head<9>().squaredNorm();
-  }
-  return imu_factors_.empty() ? 0 : std::sqrt(sum / (9.0 * static_cast<double>(imu_factors_.size())));
 }
 
 }  // namespace lintel

@@ -9,6 +9,8 @@
 #include <memory>
 #include <vector>
 
+#include "CarriedView.h"
+#include "KeyframeClusters.h"
 #include "lintel/factors/ImuFactor.h"
 #include "lintel/factors/LineFactor.h"
 #include "lintel/factors/PointFactor.h"
@@ -31,10 +33,10 @@ struct ParallelLines {
 class BatchProblem {
  public:
   /// `use_point`, `use_line`: which landmarks take part, by place in the material; `most_views` of each have residuals.
-  /// `groups` of parallel lines share a direction each.
+  /// `groups` of parallel lines share a direction each. Keyframes that are not anchors are carried by theirs.
   BatchProblem(const Rig& calibrated, const EstimatorParams& estimator, MapMaterial& material,
-               const std::vector<bool>& use_point, const std::vector<bool>& use_line, std::size_t most_views,
-               const std::vector<ParallelLines>& groups);
+               const std::vector<Anchors>& anchors, const std::vector<bool>& use_point,
+               const std::vector<bool>& use_line, std::size_t most_views, const std::vector<ParallelLines>& groups);
 
   struct Summary {
     bool usable = false;
@@ -42,6 +44,7 @@ class BatchProblem {
     std::size_t residuals = 0;
     double cost_before = 0, cost_after = 0;
   };
+  /// Solves for anchors, calibration and landmarks; then for the keyframes between the anchors, all else held.
   /// Ends when an iteration lowers the cost by less than `tolerance` of it, or when `goOn`, called after every
   /// iteration with their number, says so.
   Summary solve(int max_iterations, double tolerance, const std::function<bool(int)>& goOn);
@@ -60,14 +63,32 @@ class BatchProblem {
   void addPoints();
   void addLines();
   void addGroups();
+  template <class Target>
+  void addView(ImageFactor<Target>& factor, ceres::LossFunction& loss, std::size_t keyframe, double* landmark);
+  bool isAnchor(std::size_t k) const;
+  Carriage carriage(std::size_t k) const;
+  void carryAlong();
+  void settle();
   Eigen::Vector3d originOf(FrameId keyframe) const;
 
   std::size_t poseAt(std::size_t k) const { return keyframes_at_ + k * (kPoseSize + kMotionSize); }
   std::size_t motionAt(std::size_t k) const { return poseAt(k) + kPoseSize; }
 
+  static ceres::Problem::Options problemOptions();
+  static StateManifold* poseManifold();
+
+  /// A view from a keyframe that hangs on another one.
+  struct CarriedResidual {
+    ceres::CostFunction* factor;  ///< with the keyframe's own pose
+    ceres::LossFunction* loss;
+    std::size_t keyframe;
+    double* landmark;
+  };
+
   Rig calibrated_;
   const EstimatorParams& estimator_;
   MapMaterial& material_;
+  const std::vector<Anchors> anchors_;
   std::size_t most_views_;
   std::vector<std::size_t> points_, lines_;  // places in the material
   std::vector<ParallelLines> groups_;
@@ -79,9 +100,10 @@ class BatchProblem {
   ceres::CauchyLoss point_loss_, line_loss_, calibration_loss_, structural_loss_;
   std::deque<PointFactor> point_factors_;
   std::deque<LineFactor> line_factors_;
-  std::deque<SharedDirectionFactor> structural_factors_;
   std::vector<std::pair<std::size_t, std::unique_ptr<ImuFactor>>> imu_factors_;  // with the later keyframe's place
-  std::vector<std::unique_ptr<ceres::CostFunction>> priors_;
+  std::vector<std::unique_ptr<ImuFactor>> anchor_imu_factors_;                   // from anchor to anchor
+  std::vector<CarriedResidual> carried_views_;
+  std::vector<std::unique_ptr<ceres::CostFunction>> own_factors_;  // the others
   std::unique_ptr<ceres::Problem> problem_;
 };
 

@@ -8,6 +8,7 @@
 
 #include "BatchProblem.h"
 #include "Evidence.h"
+#include "KeyframeClusters.h"
 #include "LineGroups.h"
 #include "MapFitting.h"
 #include "lintel/core/Quantiles.h"
@@ -169,11 +170,13 @@ RefinementReport BatchRefinement::adjust(MapMaterial& material, const Refinement
                          l.estimate.sigmaPosition(0) <= params_.line_max_relative_sigma * l.distance_m);
     std::vector<ParallelLines> groups;
     if (round > 0 && params_.groups) groups = parallelLines(map_, material);
-    BatchProblem problem(calibrated_, estimator_, material, use_point, use_line,
+    const std::vector<Anchors> anchors = last ? fewAnchors(material.keyframes, params_.most_keyframes)
+                                              : anchorsOf(material.keyframes, params_.keyframe_interval_s);
+    BatchProblem problem(calibrated_, estimator_, material, anchors, use_point, use_line,
                          static_cast<std::size_t>(std::max(0, params_.max_views)), groups);
     if (round == 0) report.imu_before = problem.imuError();
     // landmarks are chosen and classified anew after every round but the last: those need not converge
-    const auto summary = problem.solve(params_.max_iterations, last ? 1e-4 : 1e-2,
+    const auto summary = problem.solve(params_.max_iterations, last ? 2e-3 : 1e-2,
                                        [&](int iteration) { return goOn(round, iteration); });
     if (cancelled) return report;
     if (!summary.usable) {

@@ -14,15 +14,19 @@ namespace lintel {
 /// The batch adjustment after the causal pass.
 struct RefinementParams {
   bool enabled = true;
-  int rounds = 5;           ///< of: estimate and merge landmarks, adjust, reject outliers
+  int rounds = 3;           ///< of: estimate and merge landmarks, adjust, reject outliers
   int max_iterations = 12;  ///< of a round
-  bool lines = true;        ///< lines have residuals too; off: they follow the poses
-  bool groups = true;       ///< lines of a parallel group share a direction, as far as the group is parallel
+  /// In all rounds but the last keyframes are adjusted that follow each other by so much; those between are carried by
+  /// them, with all their views. 0: all are adjusted.
+  double keyframe_interval_s = 0.3;
+  int most_keyframes = 600;  ///< adjusted in the last round: of a long flight every second or third; 0: all
+  bool lines = true;         ///< lines have residuals too; off: they follow the poses
+  bool groups = true;        ///< lines of a parallel group share a direction, as far as the group is parallel
   /// Standard deviations of points and lines against the window's, which are larger than its residuals because what it
   /// marginalises is never linearised again.
   double sigma_scale = 0.5;
   int min_views = 3;                           ///< keyframes that see a landmark of the adjustment
-  int max_views = 60;                          ///< of a landmark that have residuals, spread over all it has; 0: all
+  int max_views = 40;                          ///< of a landmark that have residuals, spread over all it has; 0: all
   double line_max_sigma_direction_rad = 0.10;  ///< vaguer lines have no residuals
   double line_max_relative_sigma = 0.10;       ///< of their distance
   double held_out_share = 0.05;                ///< of the points: left out, to check the result with
@@ -37,6 +41,8 @@ struct RefinementParams {
     field("enabled", enabled);
     field("rounds", rounds, Range{1, 100});
     field("max_iterations", max_iterations, Range{1, 1000});
+    field("keyframe_interval_s", keyframe_interval_s, Range{0, 1});
+    field("most_keyframes", most_keyframes, Range{0, 1000000});
     field("lines", lines);
     field("groups", groups);
     field("sigma_scale", sigma_scale, Range{0.01, 100});

@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// BatchProblem: the residuals of the IMU.
+#include <cmath>
+
+#include "BatchProblem.h"
+
+namespace lintel {
+
+void BatchProblem::addImu() {
+  std::shared_ptr<Preintegration> whole;  // since the last anchor
+  for (std::size_t k = 1; k < material_.keyframes.size(); ++k) {
+    const RetiredKeyframe& keyframe = material_.keyframes[k];
+    if (!keyframe.imu || keyframe.imu->dt_s() <= 0) continue;
+    auto imu = std::make_shared<Preintegration>(*keyframe.imu);
+    imu->repropagate(material_.keyframes[k - 1].bias);
+    imu_factors_.emplace_back(k, std::make_unique<ImuFactor>(imu));
+    if (whole) {
+      whole->append(*imu);
+    } else {
+      whole = std::make_shared<Preintegration>(*imu);
+    }
+    if (!isAnchor(k)) continue;
+    std::size_t from = k - 1;
+    while (!isAnchor(from)) --from;
+    whole->repropagate(material_.keyframes[from].bias);
+    anchor_imu_factors_.push_back(std::make_unique<ImuFactor>(whole));
+    problem_->AddResidualBlock(anchor_imu_factors_.back().get(), nullptr, at(poseAt(from)), at(motionAt(from)),
+                               at(poseAt(k)), at(motionAt(k)));
+    whole.reset();
+  }
+}
+
+double BatchProblem::imuError() const {
+  double sum = 0;
+  for (const auto& [k, factor] : imu_factors_) {
+    const double* blocks[] = {values_.data() + poseAt(k - 1), values_.data() + motionAt(k - 1),
+                              values_.data() + poseAt(k), values_.data() + motionAt(k)};
+    Eigen::Matrix<double, 15, 1> r;
+    factor->Evaluate(blocks, r.data(), nullptr);
+    sum += r.head<9>().squaredNorm();
+  }
+  return imu_factors_.empty() ? 0 : std::sqrt(sum / (9.0 * static_cast<double>(imu_factors_.size())));
+}
+
+}  // namespace lintel
