@@ -6,6 +6,8 @@
 #include <limits>
 #include <stdexcept>
 
+#include "lintel/core/FrameRate.h"
+
 namespace lintel {
 namespace {
 
@@ -83,6 +85,16 @@ TEST(ParamRange, CamerasLikeEurocsAreTheReference) {
   EXPECT_EQ(pixelScale(cameraOf(229)), 0.5);
   EXPECT_EQ(pixelScale(cameraOf(1500)), 3.25);
   EXPECT_EQ(pixelScale(cameraOf(20)), 0.25);
+}
+
+TEST(FrameRate, TimesStayWhenImagesComeFaster) {
+  EXPECT_EQ(framesAtRate(2, 20), 2);
+  EXPECT_EQ(framesAtRate(2, 19.6), 2);
+  EXPECT_EQ(framesAtRate(2, 30), 3);
+  EXPECT_EQ(framesAtRate(2, 60), 6);
+  EXPECT_EQ(framesAtRate(2, 10), 1);
+  EXPECT_EQ(framesAtRate(2, 5), 1);
+  EXPECT_EQ(framesAtRate(0, 60), 0);
 }
 
 }  // namespace

@@ -10,6 +10,7 @@
 #include "landmarks/LineTriangulation.h"
 #include "landmarks/ParallelGroups.h"
 #include "landmarks/PointTriangulation.h"
+#include "lintel/core/FrameRate.h"
 #include "lintel/estimator/StatePriors.h"
 #include "lintel/geometry/Rotation.h"
 #include "lintel/inertial/NoiseMeter.h"
@@ -92,7 +93,8 @@ WindowUpdate Estimator::Impl::process(const FrameTracks& tracks, const ImuBatch&
   WindowUpdate update;
   update.t_ns = tracks.t_ns;
   const bool imu_ok = appendImu(tracks, imu);
-  const bool enters = frames_seen_++ % static_cast<std::uint64_t>(std::max(1, params_.every_nth_frame)) == 0;
+  const bool enters =
+      frames_seen_++ % static_cast<std::uint64_t>(framesAtRate(params_.every_nth_frame, rig_.camera_rate_hz)) == 0;
   if (!imu_ok && !window_.frames.empty()) {
     fail("the IMU has a gap", update);
   } else if (!enters) {

@@ -10,6 +10,7 @@
 #include "ImagePyramid.h"
 #include "LineTracker.h"
 #include "PointTracker.h"
+#include "lintel/core/FrameRate.h"
 
 namespace lintel {
 namespace {
@@ -26,6 +27,14 @@ void checkParams(const Rig& rig, const FrontEndParams& params) {
   checkAllowed("tracking.lines.min_length_px", params.lines.min_length_px, Range{params.lines.keep_length_px, 10000});
   checkAllowed("tracking.lines.max_samples", params.lines.max_samples,
                Range{static_cast<double>(params.lines.min_samples), 100});
+}
+
+/// Numbers of frames that stand for a time, at the rate of the images.
+FrontEndParams atRate(double rate_hz, FrontEndParams params) {
+  for (int* frames : {&params.points.detect_every_n, &params.points.drift_frames, &params.lines.detect_every_n,
+                      &params.lines.max_frames_without_detection})
+    *frames = framesAtRate(*frames, rate_hz);
+  return params;
 }
 
 void checkFrame(const Rig& rig, const Frame& frame) {
@@ -75,7 +84,7 @@ struct FrontEnd::Impl {
 
 FrontEnd::FrontEnd(const Rig& rig, const FrontEndParams& params) {
   checkParams(rig, params);
-  impl_ = std::make_unique<Impl>(rig, scaledTo(rig.camera, params));
+  impl_ = std::make_unique<Impl>(rig, atRate(rig.camera_rate_hz, scaledTo(rig.camera, params)));
 }
 FrontEnd::~FrontEnd() = default;
 FrontEnd::FrontEnd(FrontEnd&&) noexcept = default;
