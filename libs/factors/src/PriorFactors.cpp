@@ -66,6 +66,31 @@ BlockDifference motionDifference(const double* block, const double* linearisatio
   return d;
 }
 
+/// Of a homogeneous point (X, w): in the plane that touches the unit sphere at the linearisation.
+BlockDifference pointDifference(const double* block, const PriorBlock& prior, const Alignment& a, bool derivatives) {
+  const Eigen::Map<const Eigen::Vector4d> point(block);
+  const Eigen::Vector3d from = prior.origin_w - a.from, turned = a.R * (point.head<3>() + point[3] * from);
+  Eigen::Vector4d moved;
+  moved << turned + point[3] * (a.to - prior.origin_w), point[3];
+  const double norm = moved.norm();
+  const Eigen::Vector4d unit = moved / norm;
+  RowMajorMatrix minus(kPointTangent, kPointSize), plus(kPointSize, kPointTangent);
+  prior.manifold->MinusJacobian(prior.linearisation.data(), minus.data());
+  BlockDifference d{minus * unit, {}, {}};
+  if (!derivatives) return d;
+  prior.manifold->PlusJacobian(block, plus.data());
+  const Eigen::Matrix<double, kPointTangent, kPointSize> by_moved =
+      minus * (Eigen::Matrix4d::Identity() - unit * unit.transpose()) / norm;
+  Eigen::Matrix4d by_point = Eigen::Matrix4d::Identity(), by_alignment = Eigen::Matrix4d::Zero();
+  by_point.topLeftCorner<3, 3>() = a.R;
+  by_point.topRightCorner<3, 1>() = a.R * from + a.to - prior.origin_w;
+  by_alignment.topLeftCorner<3, 3>() = -point[3] * a.R;
+  by_alignment.topRightCorner<3, 1>() = Eigen::Vector3d::UnitZ().cross(turned);
+  d.by_block = by_moved * by_point * plus;
+  d.by_alignment = by_moved * by_alignment;
+  return d;
+}
+
 /// Of a block on which the alignment does not act.
 BlockDifference plainDifference(const double* block, const PriorBlock& prior, bool derivatives) {
   const StateManifold& manifold = *prior.manifold;
@@ -76,6 +101,15 @@ BlockDifference plainDifference(const double* block, const PriorBlock& prior, bo
   manifold.PlusJacobian(block, plus.data());
   d.by_block = manifold.differenceJacobian(block, prior.linearisation.data()).lazyProduct(plus);
   return d;
+}
+
+BlockDifference blockDifference(const double* block, const PriorBlock& prior, const Alignment& alignment, bool aligned,
+                                bool derivatives) {
+  const double* x_0 = prior.linearisation.data();
+  if (prior.action == GaugeAction::kPoint) return pointDifference(block, prior, alignment, derivatives);
+  if (aligned && prior.action == GaugeAction::kPose) return poseDifference(block, x_0, alignment, derivatives);
+  if (aligned && prior.action == GaugeAction::kMotion) return motionDifference(block, x_0, alignment, derivatives);
+  return plainDifference(block, prior, derivatives);
 }
 
 int firstPose(const std::vector<PriorBlock>& blocks) {
@@ -108,11 +142,7 @@ PriorDifference PriorFactor::difference(double const* const* parameters, bool de
   result.alignment_by_anchor = alignment.by_anchor;
   Eigen::Index at = 0;
   for (std::size_t i = 0; i < blocks_.size(); ++i) {
-    const GaugeAction action = anchor_ < 0 ? GaugeAction::kNone : blocks_[i].action;
-    const double* x_0 = blocks_[i].linearisation.data();
-    BlockDifference d = action == GaugeAction::kPose     ? poseDifference(parameters[i], x_0, alignment, derivatives)
-                        : action == GaugeAction::kMotion ? motionDifference(parameters[i], x_0, alignment, derivatives)
-                                                         : plainDifference(parameters[i], blocks_[i], derivatives);
+    BlockDifference d = blockDifference(parameters[i], blocks_[i], alignment, anchor_ >= 0, derivatives);
     result.value.segment(at, d.value.size()) = d.value;
     if (d.by_alignment.size() > 0) result.by_alignment.middleRows(at, d.value.size()) = d.by_alignment;
     at += d.value.size();

@@ -29,11 +29,12 @@ std::set<BlockKey> stayingLandmarks(const std::vector<Factor>& factors) {
 }  // namespace
 
 LandmarkSystem::LandmarkSystem(SlidingWindow& window, const std::vector<Factor>& factors,
-                               const std::map<FrameId, int>& camera_of)
+                               const std::map<FrameId, int>& camera_of, const std::set<BlockKey>& staying)
     : correction_(window.correction.data()),
       motions_(camera_of.size()),
       seeing_(camera_of.size(), false),
       staying_(stayingLandmarks(factors)) {
+  staying_.insert(staying.begin(), staying.end());
   layout_.cameras = static_cast<int>(camera_of.size());
   for (const Factor& factor : factors) {
     if (addSighting<PointTarget>(window, factor, camera_of) || addSighting<LineTarget>(window, factor, camera_of) ||

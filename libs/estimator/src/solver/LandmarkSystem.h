@@ -22,7 +22,8 @@ namespace lintel {
 class LandmarkSystem {
  public:
   /// Groups the factors; `camera_of` gives every frame its place. Window and factors must outlive the system.
-  LandmarkSystem(SlidingWindow& window, const std::vector<Factor>& factors, const std::map<FrameId, int>& camera_of);
+  LandmarkSystem(SlidingWindow& window, const std::vector<Factor>& factors, const std::map<FrameId, int>& camera_of,
+                 const std::set<BlockKey>& staying = {});
 
   const CameraLayout& layout() const { return layout_; }
 

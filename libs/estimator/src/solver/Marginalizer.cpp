@@ -55,9 +55,34 @@ WindowPrior priorOf(std::vector<BlockKey> keys, std::vector<PriorBlock> blocks, 
   return prior;
 }
 
+/// A point slides: x' = x + noise of this variance. x' takes the place of x in the equations.
+void slide(Eigen::MatrixXd& H, Eigen::VectorXd& b, Eigen::Index at, double variance) {
+  using Columns = Eigen::Matrix<double, Eigen::Dynamic, kPointTangent>;
+  const Eigen::Matrix3d W = Eigen::Matrix3d::Identity() / variance;
+  const Eigen::Matrix3d gain = (H.block<3, 3>(at, at) + W).inverse();
+  const Eigen::Vector3d b_x = b.segment<3>(at);
+  const Columns H_x = H.middleCols<3>(at), to_others = H_x * gain, crossed = to_others * W;
+  H -= to_others * H_x.transpose();
+  b -= to_others * b_x;
+  H.middleCols<3>(at) = crossed;
+  H.middleRows<3>(at) = crossed.transpose();
+  H.block<3, 3>(at, at) = W - W * gain * W;
+  b.segment<3>(at) = W * gain * b_x;
+}
+
 GaugeAction actionOf(const BlockKey& key) {
+  if (key.kind == BlockKey::kPoint) return GaugeAction::kPoint;
+
   if (key.kind == BlockKey::kPose) return GaugeAction::kPose;
   return key.kind == BlockKey::kMotion ? GaugeAction::kMotion : GaugeAction::kNone;
+}
+
+PriorBlock priorBlockOf(SlidingWindow& window, const BlockKey& key, bool absolute) {
+  const auto manifold = manifoldOf(key.kind);
+  PriorBlock block{manifold, Eigen::Map<const Eigen::VectorXd>(window.block(key), manifold->AmbientSize())};
+  if (key.kind == BlockKey::kPoint) block.origin_w = window.points.at(key.id).origin_w;
+  if (!absolute || key.kind == BlockKey::kPoint) block.action = actionOf(key);
+  return block;
 }
 
 /// Whether a factor knows where in the world a pose is.
@@ -71,12 +96,12 @@ bool isAbsolute(const Factor& factor) {
 }  // namespace
 
 std::optional<WindowPrior> marginalise(SlidingWindow& window, const std::vector<Factor>& factors,
-                                       const std::set<BlockKey>& dropped) {
+                                       const std::set<BlockKey>& dropped, const StayingPoints& staying) {
   std::set<BlockKey> first = dropped;
   for (const Factor& factor : factors)
     for (const BlockKey& key : factor.blocks)
-      if (isLandmark(key)) first.insert(key);
-  ReducedSystem system(window, factors, first, {});
+      if (isLandmark(key) && staying.keys.count(key) == 0) first.insert(key);
+  ReducedSystem system(window, factors, first, {}, staying.keys);
   system.linearise();
   NormalEquations eq = system.eliminate();
   std::size_t kept = 0;
@@ -86,13 +111,14 @@ std::optional<WindowPrior> marginalise(SlidingWindow& window, const std::vector<
   eliminate(eq, 0, start);
   const bool absolute = std::any_of(factors.begin(), factors.end(), isAbsolute);
   std::vector<PriorBlock> blocks;
+  Eigen::MatrixXd H = eq.H.bottomRightCorner(size, size).selfadjointView<Eigen::Lower>();
+  Eigen::VectorXd b = eq.b.tail(size);
   for (std::size_t i = kept; i < eq.blocks.size(); ++i) {
-    const auto manifold = manifoldOf(eq.blocks[i].kind);
-    blocks.push_back({manifold, Eigen::Map<const Eigen::VectorXd>(window.block(eq.blocks[i]), manifold->AmbientSize()),
-                      absolute ? GaugeAction::kNone : actionOf(eq.blocks[i])});
+    blocks.push_back(priorBlockOf(window, eq.blocks[i], absolute));
+    if (staying.walk_rad > 0 && eq.blocks[i].kind == BlockKey::kPoint)
+      slide(H, b, eq.offsets[i] - start, staying.walk_rad * staying.walk_rad);
   }
-  return priorOf({eq.blocks.begin() + static_cast<std::ptrdiff_t>(kept), eq.blocks.end()}, std::move(blocks),
-                 eq.H.bottomRightCorner(size, size), eq.b.tail(size));
+  return priorOf({eq.blocks.begin() + static_cast<std::ptrdiff_t>(kept), eq.blocks.end()}, std::move(blocks), H, b);
 }
 
 }  // namespace lintel

@@ -34,8 +34,8 @@ bool comesBefore(const BlockKey& a, const BlockKey& b) {
 }
 
 ReducedSystem::ReducedSystem(SlidingWindow& window, const std::vector<Factor>& factors, const std::set<BlockKey>& first,
-                             const std::set<BlockKey>& frozen)
-    : window_(window), landmarks_(window, factors, placeCameras(window)) {
+                             const std::set<BlockKey>& frozen, const std::set<BlockKey>& staying)
+    : window_(window), landmarks_(window, factors, placeCameras(window), staying) {
   placeStates(first, frozen);
 }
 

@@ -36,7 +36,7 @@ class ReducedSystem {
  public:
   /// States in `first` come first; those in `frozen` are constants. Factors and window must outlive the system.
   ReducedSystem(SlidingWindow& window, const std::vector<Factor>& factors, const std::set<BlockKey>& first,
-                const std::set<BlockKey>& frozen);
+                const std::set<BlockKey>& frozen, const std::set<BlockKey>& staying = {});
 
   /// Half the sum of (robust) squares at the window's present values.
   double cost() const;

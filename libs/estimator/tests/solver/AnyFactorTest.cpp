@@ -190,11 +190,11 @@ double heightInformation(SlidingWindow& window, const WindowPrior& prior, FrameI
 TEST_F(AnyFactorTest, IsCarriedIntoThePrior) {
   // from the oldest frame's height to the next one's: by the factor itself, and by what ties the two
   SlidingWindow without = window_;
-  marginaliseOldest(without, factors_->factors());
+  marginaliseOldest(without, factors_->factors(), {});
   factors_->add(std::make_unique<HeightFactor>(window_.frames[0].pose[2], 1e4), {{BlockKey::kPose, 0}});
   factors_->add(std::make_unique<HeightFactor>(window_.frames[2].pose[2], 1e4), {{BlockKey::kPose, 2}});
   SlidingWindow with = window_;
-  marginaliseOldest(with, factors_->factors());
+  marginaliseOldest(with, factors_->factors(), {});
   ASSERT_EQ(without.priors.size(), 1u);
   ASSERT_EQ(with.priors.size(), 1u);
   EXPECT_GT(heightInformation(with, with.priors[0], 1), 2 * heightInformation(without, without.priors[0], 1));
@@ -211,7 +211,7 @@ TEST_F(AnyFactorTest, APriorHoldsNeitherLandmarksNorDirections) {
   addMix({{BlockKey::kPoint, leaving}, {BlockKey::kPose, 3}});
   addMix({{BlockKey::kPoint, leaving}, {BlockKey::kPoint, staying}});
   addMix({{BlockKey::kPose, 0}, {BlockKey::kDirection, 3}});
-  marginaliseOldest(window_, factors_->factors());
+  marginaliseOldest(window_, factors_->factors(), {});
   ASSERT_EQ(window_.priors.size(), 1u);
   for (const BlockKey& key : window_.priors[0].blocks) {
     EXPECT_FALSE(isLandmark(key));

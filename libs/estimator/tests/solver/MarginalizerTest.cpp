@@ -5,6 +5,8 @@
 
 #include <Eigen/Cholesky>
 #include <algorithm>
+#include <iterator>
+#include <limits>
 #include <random>
 
 #include "DenseReference.h"
@@ -12,6 +14,7 @@
 #include "landmarks/PointTriangulation.h"
 #include "lintel/factors/PriorFactors.h"
 #include "lintel/geometry/Rotation.h"
+#include "window/LastingPoints.h"
 #include "window/WindowFactors.h"
 #include "window/WindowMarginalization.h"
 
@@ -116,6 +119,57 @@ TEST_F(MarginalizerTest, GradientIsThatOfExplicitElimination) {
   EXPECT_LT((again.b - expected).norm(), 1e-6 * expected.norm());
 }
 
+TEST_F(MarginalizerTest, PointsThatStayMayGoLater) {
+  const std::set<BlockKey> dropped = firstFrameAndPoints(window_);
+  std::set<BlockKey> points;
+  for (const BlockKey& key : dropped)
+    if (key.kind == BlockKey::kPoint && points.size() < 3) points.insert(key);
+  FactorParams params = kParams.factors;
+  params.track_freedom = std::numeric_limits<double>::infinity();  // points that stay have no loss of their track
+  WindowFactors factors(window_, params);
+  factors.addImu();
+  factors.addPoints();
+  factors.addCalibrationPriors(kParams.calibration, flight_.rig.T_b_c);
+  const auto at_once = marginalise(window_, factors.factors(), dropped);
+  std::set<BlockKey> without_points;
+  std::set_difference(dropped.begin(), dropped.end(), points.begin(), points.end(),
+                      std::inserter(without_points, without_points.end()));
+  const auto with_points = marginalise(window_, factors.factors(), without_points, {points});
+  ASSERT_TRUE(at_once && with_points);
+  ASSERT_EQ(with_points->blocks.size(), at_once->blocks.size() + 3);
+  const auto later = marginalise(window_, {{with_points->factor.get(), nullptr, with_points->blocks}}, points);
+  ASSERT_TRUE(later);
+  ASSERT_EQ(later->blocks, at_once->blocks);
+  const Eigen::MatrixXd &expected = at_once->factor->information(), &H = later->factor->information();
+  EXPECT_LT((H - expected).norm(), 1e-6 * expected.norm());
+  const Eigen::VectorXd b = later->factor->root().transpose() * later->factor->constant();
+  const Eigen::VectorXd b_expected = at_once->factor->root().transpose() * at_once->factor->constant();
+  EXPECT_LT((b - b_expected).norm(), 1e-6 * b_expected.norm());
+}
+
+TEST_F(MarginalizerTest, APointThatSlidesGainsItsWalkAsCovariance) {
+  const BlockKey point{BlockKey::kPoint, window_.points.begin()->first}, motion{BlockKey::kMotion, 0};
+  PriorBlock of_point{manifoldOf(BlockKey::kPoint), window_.points.begin()->second.point, GaugeAction::kPoint};
+  of_point.origin_w = window_.points.begin()->second.origin_w;
+  constexpr int n = kMotionSize + kPointTangent;
+  Eigen::MatrixXd A = Eigen::MatrixXd::Identity(n, n);
+  for (int i = 0; i < n; ++i)
+    for (int k = 0; k < n; ++k) A(i, k) += 0.3 * std::sin(1 + 3.7 * i + 1.3 * k * k);
+  const PriorFactor before({{manifoldOf(BlockKey::kMotion), window_.frames[0].motion}, of_point}, A,
+                           Eigen::VectorXd::LinSpaced(n, -1, 1));
+  const auto after = marginalise(window_, {{&before, nullptr, {motion, point}}}, {}, {{point}, 0.2});
+  ASSERT_TRUE(after);
+  ASSERT_EQ(after->blocks, (std::vector<BlockKey>{motion, point}));
+  Eigen::MatrixXd covariance = before.information().inverse();
+  covariance.bottomRightCorner<3, 3>().diagonal().array() += 0.2 * 0.2;
+  EXPECT_LT((after->factor->information().inverse() - covariance).norm(), 1e-9 * covariance.norm());
+  // the best estimate stays where it was
+  const auto best = [](const PriorFactor& prior) -> Eigen::VectorXd {
+    return prior.root().colPivHouseholderQr().solve(prior.constant());
+  };
+  EXPECT_LT((best(*after->factor) - best(before)).norm(), 1e-9);
+}
+
 TEST_F(MarginalizerTest, NothingStaysNothingComes) {
   WindowFactors factors(window_, kParams.factors);
   factors.addGauge();
@@ -135,6 +189,13 @@ double resistance(SlidingWindow& window, const WindowPrior& prior, const Eigen::
       direction.segment<3>(eq.offsets[i] + 3) = T_w_b.q.conjugate() * turn;
     } else if (key.kind == BlockKey::kMotion) {
       direction.segment<3>(eq.offsets[i]) = turn.cross(velocityOf(window.frame(key.id).motion.data()));
+    } else if (key.kind == BlockKey::kPoint) {
+      const PointTrack& track = window.points.at(key.id);
+      Eigen::Vector4d moved = Eigen::Vector4d::Zero();
+      moved.head<3>() = track.point[3] * (shift + turn.cross(window.positionOf(track)));
+      RowMajorMatrix minus(kPointTangent, kPointSize);
+      manifoldOf(key.kind)->MinusJacobian(track.point.data(), minus.data());
+      direction.segment<3>(eq.offsets[i]) = minus * moved;
     }
   }
   direction.normalize();
@@ -160,6 +221,7 @@ TEST(MarginalisedPrior, LeavesPositionAndYawFree) {
     window.removeFrame(window.frames.front().id, true);
     ASSERT_EQ(window.priors.size(), 1u);
     const WindowPrior& prior = window.priors[0];
+    EXPECT_GE(pointsInPriors(window).size(), 10u);
     EXPECT_LT(resistance(window, prior, Eigen::Vector3d::UnitX(), 0), 1e-6) << round;
     EXPECT_LT(resistance(window, prior, Eigen::Vector3d::UnitY(), 0), 1e-6) << round;
     EXPECT_LT(resistance(window, prior, Eigen::Vector3d::UnitZ(), 0), 1e-6) << round;
@@ -187,6 +249,11 @@ TEST(MarginalisedPrior, LeavesPositionAndYawFreeWhereverTheWindowHasMoved) {
       frame.pose = toBlock(T_w_b * Pose{expRotation({little, -little, little}), {little, 0, -little}});
       frame.motion.segment<3>(kVelocityAt) = yaw * velocityOf(frame.motion.data()) + Eigen::Vector3d(little, 0, 0);
     }
+    for (auto& [id, track] : window.points) {
+      const Eigen::Vector3d p_w = yaw * window.positionOf(track) + Eigen::Vector3d(0.2, -0.1, 0.05);
+      track.point.head<3>() = track.point[3] * (p_w - track.origin_w);
+      track.point.normalize();
+    }
     const WindowPrior& prior = window.priors[0];
     EXPECT_LT(resistance(window, prior, Eigen::Vector3d::UnitX(), 0), 1e-6) << round;
     EXPECT_LT(resistance(window, prior, Eigen::Vector3d::UnitZ(), 0), 1e-6) << round;
@@ -194,7 +261,8 @@ TEST(MarginalisedPrior, LeavesPositionAndYawFreeWhereverTheWindowHasMoved) {
     // and without the alignment it would not be
     WindowPrior plain{prior.blocks, nullptr};
     std::vector<PriorBlock> blocks = prior.factor->blocks();
-    for (PriorBlock& block : blocks) block.action = GaugeAction::kNone;
+    for (PriorBlock& block : blocks)
+      if (block.action != GaugeAction::kPoint) block.action = GaugeAction::kNone;
     plain.factor = std::make_shared<PriorFactor>(blocks, prior.factor->root(), prior.factor->constant());
     EXPECT_GT(resistance(window, plain, Eigen::Vector3d::Zero(), 1), 1e-5) << round;
   }

@@ -12,6 +12,8 @@
 #include "landmarks/LineTriangulation.h"
 #include "landmarks/PointTriangulation.h"
 #include "solver/Marginalizer.h"
+#include "window/LastingPoints.h"
+#include "window/OutlierRejection.h"
 
 namespace lintel {
 namespace {
@@ -30,6 +32,13 @@ WindowPrior motionPrior(const SlidingWindow& window, FrameId id) {
   return prior;
 }
 
+/// Every track starts anew when its oldest frame leaves.
+const EstimatorParams kNoneLasts = [] {
+  EstimatorParams params;
+  params.landmarks.lasting_points = 0;
+  return params;
+}();
+
 SlidingWindow flownWindow() {
   TrackSimulationParams tracks;
   tracks.duration_s = 2;
@@ -44,7 +53,7 @@ TEST(MarginaliseOldest, LeavesOnePriorOnTheStatesThatStay) {
   SlidingWindow window = flownWindow();
   window.priors = {motionPrior(window, 0), motionPrior(window, 5)};
   const auto untouched = window.priors[1].factor;
-  marginaliseOldest(window, kParams);
+  marginaliseOldest(window, kNoneLasts);
   ASSERT_EQ(window.priors.size(), 2u);
   EXPECT_EQ(window.priors[0].factor, untouched) << "a prior on other frames stays as it is";
   const WindowPrior& prior = window.priors[1];
@@ -61,9 +70,13 @@ TEST(MarginaliseOldest, LeavesOnePriorOnTheStatesThatStay) {
 
 TEST(MarginaliseOldest, NoSightingCountsTwice) {
   SlidingWindow window = flownWindow();
+  // some tracks were lost before the newest frame
+  for (TrackId id : {1u, 2u, 3u, 4u, 5u, 6u})
+    if (auto it = window.points.find(id); it != window.points.end() && it->second.sightings.size() > 4)
+      it->second.sightings.resize(4);
   const SlidingWindow before = window;
-  marginaliseOldest(window, kParams);
-  int consumed = 0, untouched = 0;
+  marginaliseOldest(window, kNoneLasts);
+  int consumed = 0, untouched = 0, lost = 0;
   for (const auto& [id, track] : window.points) {
     const PointTrack& was = before.points.at(id);
     const bool used = was.triangulated && was.sightings.size() > 1 && was.sightings.front().frame == 0;
@@ -76,10 +89,64 @@ TEST(MarginaliseOldest, NoSightingCountsTwice) {
       EXPECT_EQ(track.sightings.back().frame, 7u);
       EXPECT_EQ(track.former.size(), was.sightings.size() - 2) << "they stay part of the track's history";
       ++consumed;
+    } else if (was.sightings.back().frame != 7) {
+      ASSERT_EQ(track.sightings.size(), 1u) << "the oldest frame's, which goes with it";
+      EXPECT_EQ(track.former.size(), was.sightings.size() - 1);
+      ++lost;
     }
   }
+  EXPECT_GT(lost, 1);
   EXPECT_GT(consumed, 5);
   EXPECT_GT(untouched, 5);
+}
+
+TEST(MarginaliseOldest, LastingPointsStayInThePriorWithTheSightingsToCome) {
+  SlidingWindow window = flownWindow();
+  EstimatorParams params;
+  params.landmarks.lasting_points = 5;
+  const SlidingWindow before = window;
+  marginaliseOldest(window, params);
+  const std::set<BlockKey> lasting = pointsInPriors(window);
+  ASSERT_EQ(lasting.size(), 5u);
+  for (const BlockKey& key : lasting) {
+    const PointTrack &track = window.points.at(key.id), &was = before.points.at(key.id);
+    EXPECT_EQ(was.sightings.front().frame, 0u) << "the oldest frame saw it";
+    EXPECT_EQ(track.sightings.size(), was.sightings.size()) << "only the oldest one is used, and leaves with its frame";
+    EXPECT_TRUE(touches(window.priors.back(), BlockKey::kPoint, key.id));
+  }
+  // the next prior holds those that are still seen, and the one that was lost leaves with all its sightings
+  window.removeFrame(0, true);
+  PointTrack& lost = window.points.at(lasting.begin()->id);
+  while (lost.sightings.back().frame > 4) lost.sightings.pop_back();
+  params.landmarks.lasting_points = 0;  // no new ones
+  marginaliseOldest(window, params);
+  EXPECT_EQ(pointsInPriors(window).size(), 4u);
+  EXPECT_EQ(pointsInPriors(window).count({BlockKey::kPoint, lost.id}), 0u);
+  EXPECT_EQ(lost.sightings.size(), 1u);
+}
+
+TEST(MarginaliseOldest, PointsThatFitBadlyDoNotLast) {
+  SlidingWindow window = flownWindow();
+  marginaliseOldest(window, kParams);
+  const BlockKey bad = *pointsInPriors(window).begin();
+  window.removeFrame(0, true);
+  for (PointSighting& s : window.points.at(bad.id).sightings) s.px += Eigen::Vector2d(8, 0);
+  EXPECT_EQ(rejectOutliers(window, kParams.landmarks), 0) << "a prior holds it until the next one is made";
+  marginaliseOldest(window, kParams);
+  EXPECT_EQ(pointsInPriors(window).count(bad), 0u);
+}
+
+TEST(MarginaliseSecondNewest, ALastingPointThatItTookAlongLeavesThePrior) {
+  SlidingWindow window = flownWindow();
+  marginaliseOldest(window, kParams);
+  window.removeFrame(0, true);
+  const BlockKey key = *pointsInPriors(window).begin();
+  PointTrack& track = window.points.at(key.id);
+  track.sightings = {track.sightings[track.sightings.size() - 2]};
+  ASSERT_EQ(track.sightings.back().frame, 6u);
+  marginaliseSecondNewest(window);
+  EXPECT_EQ(pointsInPriors(window).count(key), 0u);
+  EXPECT_GE(pointsInPriors(window).size(), 3u);
 }
 
 TEST(MarginaliseOldest, TheNewestFramesSightingsStayOutOfThePrior) {
@@ -88,8 +155,8 @@ TEST(MarginaliseOldest, TheNewestFramesSightingsStayOutOfThePrior) {
   SlidingWindow window = flownWindow(), other = window;
   for (auto& [id, track] : other.points)
     if (track.sightings.back().frame == 7) track.sightings.back().px += Eigen::Vector2d(0.5, -0.3);
-  marginaliseOldest(window, kParams);
-  marginaliseOldest(other, kParams);
+  marginaliseOldest(window, kNoneLasts);
+  marginaliseOldest(other, kNoneLasts);
   const PriorFactor &prior = *window.priors.back().factor, &same = *other.priors.back().factor;
   ASSERT_EQ(window.priors.back().blocks, other.priors.back().blocks);
   EXPECT_EQ(prior.root(), same.root());

@@ -68,6 +68,8 @@ struct LandmarkParams {
   double point_max_error_px = 3.0;        ///< mean reprojection error above which a track is an outlier
   double max_depth_m = 200;
   double min_depth_m = 0.1;
+  int lasting_points = 15;         ///< that stay in the prior when their tracks outlast the window
+  double lasting_walk_px = 1.0;    ///< how far their tracks slide on the surface [px/sqrt(s)]
   int line_min_observations = 4;   ///< window frames
   double line_max_error_px = 3.0;  ///< mean distance of the end points
 
@@ -78,6 +80,8 @@ struct LandmarkParams {
     field("point_max_error_px", point_max_error_px, Range{0.1, 1000});
     field("max_depth_m", max_depth_m, Range{0.1, 1000000});
     field("min_depth_m", min_depth_m, Range{0.001, 1000});
+    field("lasting_points", lasting_points, Range{0, 1000});
+    field("lasting_walk_px", lasting_walk_px, Range{0.001, 1000});
     field("line_min_observations", line_min_observations, Range{2, 1000});
     field("line_max_error_px", line_max_error_px, Range{0.1, 1000});
   }

@@ -16,6 +16,7 @@ enum class GaugeAction {
   kNone,    ///< calibration
   kPose,    ///< p <- R p + t, R_w_b <- R R_w_b
   kMotion,  ///< v <- R v
+  kPoint,   ///< X + w o <- R (X + w o) + w t, with o the point's origin
 };
 
 /// One block of a prior: what it was when the prior was made.
@@ -23,6 +24,7 @@ struct PriorBlock {
   std::shared_ptr<const StateManifold> manifold;
   Eigen::VectorXd linearisation;  ///< ambient
   GaugeAction action = GaugeAction::kNone;
+  Eigen::Vector3d origin_w = Eigen::Vector3d::Zero();  ///< of a point: what X / w is relative to
 };
 
 /// x' ⊟ x_0 of all blocks of a prior, and its derivatives with respect to their tangents:

@@ -1,0 +1,77 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "window/LastingPoints.h"
+
+#include <algorithm>
+#include <map>
+
+#include "landmarks/PointTriangulation.h"
+
+namespace lintel {
+
+namespace {
+
+double squaredResidual(SlidingWindow& window, const Factor& factor) {
+  std::vector<const double*> blocks;
+  for (const BlockKey& key : factor.blocks) blocks.push_back(window.block(key));
+  Eigen::Vector2d r;
+  factor.cost->Evaluate(blocks.data(), r.data(), nullptr);
+  return r.squaredNorm();
+}
+
+/// A prior is linear: in a point whose depth is known to a few per cent it stays true while the depth improves.
+bool isPlaced(const PointTrack& track) {
+  constexpr double kMostRelativeSigma = 0.05;
+  return track.sigma_inverse_depth * track.point.head<3>().norm() < kMostRelativeSigma * track.point[3];
+}
+
+/// Whether a track reaches from the oldest frame to the newest, with gaps at most for a quarter of the window.
+bool spansWindow(const SlidingWindow& window, const PointTrack& track) {
+  return track.sightings.front().frame == window.frames.front().id &&
+         track.sightings.back().frame == window.frames.back().id &&
+         4 * track.sightings.size() >= 3 * (window.frames.size() - 1);
+}
+
+/// Chi-square per degree of freedom of the points that may be added.
+std::map<BlockKey, double> candidates(SlidingWindow& window, const std::vector<Factor>& measurements,
+                                      const std::set<BlockKey>& known) {
+  std::map<BlockKey, double> result;
+  for (const Factor& factor : measurements) {
+    const BlockKey& key = factor.blocks.back();
+    if (key.kind != BlockKey::kPoint || !isImageFactor(factor) || known.count(key) > 0) continue;
+    const PointTrack& track = window.points.at(key.id);
+    if (isPlaced(track) && spansWindow(window, track))
+      result[key] += squaredResidual(window, factor) / (2.0 * static_cast<double>(track.sightings.size()) - 3);
+  }
+  return result;
+}
+
+}  // namespace
+
+std::set<BlockKey> pointsInPriors(const SlidingWindow& window) {
+  std::set<BlockKey> result;
+  for (const WindowPrior& prior : window.priors)
+    for (const BlockKey& key : prior.blocks)
+      if (key.kind == BlockKey::kPoint) result.insert(key);
+  return result;
+}
+
+std::set<BlockKey> lastingPoints(SlidingWindow& window, const std::vector<Factor>& measurements,
+                                 const LandmarkParams& params) {
+  const std::set<BlockKey> known = pointsInPriors(window);
+  std::set<BlockKey> lasting;
+  for (const BlockKey& key : known) {
+    const PointTrack& track = window.points.at(key.id);
+    if (track.sightings.back().frame == window.frames.back().id &&
+        reprojectionError(window, track) <= params.point_max_error_px)
+      lasting.insert(key);
+  }
+  std::vector<std::pair<double, BlockKey>> ranked;
+  for (const auto& [key, chi_square] : candidates(window, measurements, known))
+    if (chi_square < 1) ranked.emplace_back(chi_square, key);
+  std::sort(ranked.begin(), ranked.end());
+  for (const auto& [chi_square, key] : ranked)
+    if (static_cast<int>(lasting.size()) < params.lasting_points) lasting.insert(key);
+  return lasting;
+}
+
+}  // namespace lintel
