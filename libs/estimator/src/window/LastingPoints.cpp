@@ -4,8 +4,6 @@
 #include <algorithm>
 #include <map>
 
-#include "landmarks/PointTriangulation.h"
-
 namespace lintel {
 
 namespace {
@@ -31,16 +29,18 @@ bool spansWindow(const SlidingWindow& window, const PointTrack& track) {
          4 * track.sightings.size() >= 3 * (window.frames.size() - 1);
 }
 
-/// Chi-square per degree of freedom of the points that may be added.
-std::map<BlockKey, double> candidates(SlidingWindow& window, const std::vector<Factor>& measurements,
+/// Chi-square per degree of freedom of the points that the newest frame sees: two numbers a sighting, three for the
+/// point's place unless a prior knows it.
+std::map<BlockKey, double> chiSquares(SlidingWindow& window, const std::vector<Factor>& measurements,
                                       const std::set<BlockKey>& known) {
   std::map<BlockKey, double> result;
   for (const Factor& factor : measurements) {
     const BlockKey& key = factor.blocks.back();
-    if (key.kind != BlockKey::kPoint || !isImageFactor(factor) || known.count(key) > 0) continue;
+    if (key.kind != BlockKey::kPoint || !isImageFactor(factor)) continue;
     const PointTrack& track = window.points.at(key.id);
-    if (isPlaced(track) && spansWindow(window, track))
-      result[key] += squaredResidual(window, factor) / (2.0 * static_cast<double>(track.sightings.size()) - 3);
+    if (track.sightings.back().frame != window.frames.back().id) continue;
+    const double freedom = 2.0 * static_cast<double>(track.sightings.size()) - (known.count(key) > 0 ? 0 : 3);
+    result[key] += squaredResidual(window, factor) / freedom;
   }
   return result;
 }
@@ -59,15 +59,15 @@ std::set<BlockKey> lastingPoints(SlidingWindow& window, const std::vector<Factor
                                  const LandmarkParams& params) {
   const std::set<BlockKey> known = pointsInPriors(window);
   std::set<BlockKey> lasting;
-  for (const BlockKey& key : known) {
-    const PointTrack& track = window.points.at(key.id);
-    if (track.sightings.back().frame == window.frames.back().id &&
-        reprojectionError(window, track) <= params.point_max_error_px)
-      lasting.insert(key);
-  }
   std::vector<std::pair<double, BlockKey>> ranked;
-  for (const auto& [key, chi_square] : candidates(window, measurements, known))
-    if (chi_square < 1) ranked.emplace_back(chi_square, key);
+  for (const auto& [key, chi_square] : chiSquares(window, measurements, known)) {
+    const PointTrack& track = window.points.at(key.id);
+    if (chi_square >= 1) continue;
+    if (known.count(key) > 0)
+      lasting.insert(key);
+    else if (isPlaced(track) && spansWindow(window, track))
+      ranked.emplace_back(chi_square, key);
+  }
   std::sort(ranked.begin(), ranked.end());
   for (const auto& [chi_square, key] : ranked)
     if (static_cast<int>(lasting.size()) < params.lasting_points) lasting.insert(key);

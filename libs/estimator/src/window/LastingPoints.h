@@ -17,10 +17,9 @@ namespace lintel {
 /// The points that priors know.
 std::set<BlockKey> pointsInPriors(const SlidingWindow& window);
 
-/// The points that stay when the oldest frame leaves: those in priors that the newest frame sees and that still fit
-/// (LandmarkParams::point_max_error_px), and up to LandmarkParams::lasting_points of those that the oldest and the
-/// newest frame see, in three quarters of the window's frames at least, with a depth known to a twentieth and residuals
-/// as small as their sigma says; the best first.
+/// The points that stay when the oldest frame leaves, all with residuals as small as their sigma says: those in priors
+/// that the newest frame sees, and, up to LandmarkParams::lasting_points, those that the oldest and the newest frame
+/// see, in three quarters of the window's frames at least, with a depth known to a twentieth; the best first.
 std::set<BlockKey> lastingPoints(SlidingWindow& window, const std::vector<Factor>& measurements,
                                  const LandmarkParams& params);
 

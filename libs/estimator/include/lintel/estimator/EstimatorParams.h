@@ -69,7 +69,7 @@ struct LandmarkParams {
   double max_depth_m = 200;
   double min_depth_m = 0.1;
   int lasting_points = 15;         ///< that stay in the prior when their tracks outlast the window
-  double lasting_walk_px = 1.0;    ///< how far their tracks slide on the surface [px/sqrt(s)]
+  double lasting_walk_px = 1.5;    ///< how far their tracks slide on the surface [px/sqrt(s)]
   int line_min_observations = 4;   ///< window frames
   double line_max_error_px = 3.0;  ///< mean distance of the end points
 
