@@ -1,14 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "lintel/bench/BenchRunner.h"
 
-#include <fcntl.h>
 #include <signal.h>
-#include <sys/file.h>
-#include <unistd.h>
 
-#include <cerrno>
 #include <cmath>
-#include <cstring>
 #include <fstream>
 #include <nlohmann/json.hpp>
 #include <stdexcept>
@@ -16,6 +11,7 @@
 #include "BenchJson.h"
 #include "lintel/core/AtomicFile.h"
 #include "lintel/core/ChildProcess.h"
+#include "lintel/core/FolderLock.h"
 #include "lintel/evaluation/TrajectoryFile.h"
 #include "lintel/sensing/GroundTruth.h"
 
@@ -28,22 +24,18 @@ using Json = nlohmann::ordered_json;
 
 constexpr std::size_t kKeptTruePoses = 2000;  // for plots; lintel-eval reads all of them
 
-/// Held by one process or thread at a time, on every machine that sees the file; given up when its holder ends.
-class FolderLock {
+/// A file of that name that one job at a time holds, on every machine that sees it.
+class JobLock {
  public:
-  explicit FolderLock(const fs::path& path) {
-    fs::create_directories(path.parent_path());
-    descriptor_ = open(path.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0666);
-    if (descriptor_ < 0) throw std::runtime_error(path.string() + ": " + std::strerror(errno) + "; choose another -o");
-    while (flock(descriptor_, LOCK_EX) != 0)
-      if (errno != EINTR) throw std::runtime_error(path.string() + ": cannot be locked: " + std::strerror(errno));
-  }
-  ~FolderLock() { close(descriptor_); }
-  FolderLock(const FolderLock&) = delete;
-  FolderLock& operator=(const FolderLock&) = delete;
+  explicit JobLock(const fs::path& path) : lock_(made(path), FolderLock::WhenHeld::kWait) {}
 
  private:
-  int descriptor_ = -1;
+  static std::string made(const fs::path& path) {
+    fs::create_directories(path.parent_path());
+    std::ofstream(path, std::ios::app);
+    return path.string();
+  }
+  FolderLock lock_;
 };
 
 std::string nineDigits(double value) {
@@ -93,14 +85,19 @@ bool isDone(const BenchJob& job, bool retry_failed) {
   return !retry_failed || json.value("fault", "").empty();
 }
 
-BenchRunner::BenchRunner(const BenchSuite& suite, fs::path out, fs::path programs, int vio_threads)
-    : suite_(suite), out_(std::move(out)), programs_(std::move(programs)), vio_threads_(vio_threads) {}
+BenchRunner::BenchRunner(const BenchSuite& suite, fs::path out, fs::path programs, int vio_threads,
+                         std::function<bool()> stop)
+    : suite_(suite),
+      out_(std::move(out)),
+      programs_(std::move(programs)),
+      vio_threads_(vio_threads),
+      stop_(std::move(stop)) {}
 
 /// Empty if it went well, else one line.
 std::string BenchRunner::runProgram(const std::vector<std::string>& words, const fs::path& log) const {
   std::vector<std::string> command = words;
   command[0] = (programs_ / words[0]).string();
-  const ChildResult result = runChild({command, "", "", {}});
+  const ChildResult result = runChild({command, "", "", {}, stop_});
   std::ofstream(log, std::ios::app) << "$ " << shellLine(command) << "\n" << result.output << result.errors;
   if (result.exit_code == 0) return "";
   const int signal = result.exit_code - 128;
@@ -116,7 +113,7 @@ std::string BenchRunner::runProgram(const std::vector<std::string>& words, const
 
 std::string BenchRunner::makeRecording(const BenchJob& job) const {
   if (job.simulation.empty() || fs::exists(job.recording_path)) return "";
-  const FolderLock lock(job.recording_path + ".lock");
+  const JobLock lock(job.recording_path + ".lock");
   if (fs::exists(job.recording_path)) return "";
   std::vector<std::string> words{"lintel-sim", "-o",        job.recording_path,
                                  "-q",         "--threads", std::to_string(vio_threads_)};
@@ -168,7 +165,7 @@ std::string BenchRunner::evaluate(const BenchJob& job, const fs::path& part) con
 }
 
 JobOutcome BenchRunner::run(const BenchJob& job, bool retry_failed) const {
-  const FolderLock lock(out_ / "locks" / (job.folder.lexically_relative(out_ / "runs").string() + ".lock"));
+  const JobLock lock(out_ / "locks" / (job.folder.lexically_relative(out_ / "runs").string() + ".lock"));
   if (isDone(job, retry_failed)) return {true, false, "done already"};
   const fs::path part = job.folder.string() + ".part";
   fs::remove_all(part);

@@ -10,10 +10,12 @@
 
 #include <algorithm>
 #include <cerrno>
+#include <chrono>
 #include <cstdio>
 #include <cstring>
 #include <memory>
 #include <stdexcept>
+#include <thread>
 
 extern char** environ;
 
@@ -89,11 +91,17 @@ struct Descriptors {
   _exit(127);
 }
 
-ChildResult waitFor(pid_t child) {
+ChildResult waitFor(pid_t child, const std::function<bool()>& stop) {
   int status = 0;
   rusage usage{};
-  while (wait4(child, &status, 0, &usage) < 0)
-    if (errno != EINTR) failWith("waiting for a program");
+  bool told = false;
+  for (pid_t ended = 0; ended != child;) {
+    ended = wait4(child, &status, stop ? WNOHANG : 0, &usage);
+    if (ended < 0 && errno != EINTR) failWith("waiting for a program");
+    if (ended != 0) continue;
+    std::this_thread::sleep_for(std::chrono::milliseconds(10));
+    if (!told && stop()) told = kill(child, SIGTERM) == 0;
+  }
   const auto seconds = [](const timeval& t) {
     return static_cast<double>(t.tv_sec) + 1e-6 * static_cast<double>(t.tv_usec);
   };
@@ -122,7 +130,7 @@ ChildResult runChild(const ChildRequest& request) {
   const pid_t parent = getpid(), child = fork();
   if (child < 0) failWith("starting " + request.command.front());
   if (child == 0) becomeChild(use, parent, command_pointers.data(), environment_pointers.data());
-  ChildResult result = waitFor(child);
+  ChildResult result = waitFor(child, request.stop);
   result.output = output.content();
   result.errors = errors.content();
   return result;

@@ -34,6 +34,11 @@ TEST(ChildProcess, ASignalIsToldFromAnExit) {
   EXPECT_EQ(runChild({{"sh", "-c", "kill -SEGV $$"}, "", "", {}}).exit_code, 128 + 11);
 }
 
+TEST(ChildProcess, IsToldToStop) {
+  EXPECT_EQ(runChild({{"sleep", "1000"}, "", "", {}, [] { return true; }}).exit_code, 128 + 15);
+  EXPECT_EQ(runChild({{"true"}, "", "", {}, [] { return false; }}).exit_code, 0);
+}
+
 TEST(ChildProcess, AddsToTheEnvironmentAndReplaces) {
   const ChildResult result =
       runChild({{"sh", "-c", "echo $LINTEL_X $HOME"}, "", "", {"LINTEL_X=here", "HOME=elsewhere"}});

@@ -16,12 +16,14 @@ constexpr double kSignificant = 4;            // standard deviations
 
 }  // namespace
 
-ClockSearch searchClock(TrackingStage& tracking, const Rig& rig) {
+ClockSearch searchClock(TrackingStage& tracking, const Rig& rig, const std::function<bool()>& cancelled) {
   ClockSearch search;
   std::vector<FrameTracks> tracks;
   ImuBatch imu;
   double next_try_s = kFirstTry_s;
-  while (auto frame = tracking.next()) {
+  while (!(cancelled && cancelled())) {
+    auto frame = tracking.next();
+    if (!frame) break;
     tracks.push_back({frame->tracks.t_ns, frame->tracks.points, {}});
     for (const ImuSample& sample : frame->step.imu)
       if (imu.empty() || sample.t_ns > imu.back().t_ns) imu.push_back(sample);

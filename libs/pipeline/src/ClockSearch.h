@@ -2,6 +2,7 @@
 #pragma once
 
 #include <deque>
+#include <functional>
 
 #include "TrackingStage.h"
 #include "lintel/core/Rig.h"
@@ -17,7 +18,8 @@ struct ClockSearch {
 };
 
 /// Looks at the tracks of the first seconds until the offset is determined, at most five seconds. Offsets that the
-/// estimator finds by itself, from its first frames on, are left to it.
-ClockSearch searchClock(TrackingStage& tracking, const Rig& rig);
+/// estimator finds by itself, from its first frames on, are left to it. `cancelled` is asked before every frame and may
+/// be empty.
+ClockSearch searchClock(TrackingStage& tracking, const Rig& rig, const std::function<bool()>& cancelled = {});
 
 }  // namespace lintel

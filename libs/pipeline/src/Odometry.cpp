@@ -58,8 +58,9 @@ void trackOnItsOwnThread(TrackingStage& tracking, const FrameTaker& take) {
 /// to be corrected, and only handed on where they are good.
 class Tracking {
  public:
-  Tracking(Recording& recording, const FrontEndParams& params, OdometryResult& result)
-      : stage_(std::in_place, recording, params, result), search_(searchClock(*stage_, recording.rig())) {
+  Tracking(Recording& recording, const FrontEndParams& params, OdometryResult& result,
+           const std::function<bool()>& cancelled)
+      : stage_(std::in_place, recording, params, result), search_(searchClock(*stage_, recording.rig(), cancelled)) {
     if (search_.offset_s == 0) {
       stage_->giveAgain(std::move(search_.frames));
       return;
@@ -112,7 +113,7 @@ OdometryResult runOdometry(Recording& recording, const Configuration& configurat
   const auto cancelled = [&] {
     return result.cancelled = result.cancelled || (options.cancelled && options.cancelled());
   };
-  Tracking prepared(recording, configuration.tracking, result);
+  Tracking prepared(recording, configuration.tracking, result, cancelled);
   const ClockSearch& search = prepared.search();
   TrackingStage& tracking = prepared.stage();
   const Configuration used = withClock(configuration, search);

@@ -143,7 +143,8 @@ std::string statisticsJson(const OdometryResult& result, const Rig& given, const
                   {"warnings", warnings},
                   {"checks", result.evidence},
                   {"not_to_be_trusted", result.verdict},
-                  {"ended_early", result.error}};
+                  {"ended_early", result.error},
+                  {"partial", result.cancelled || !result.error.empty()}};
   return json.dump(2) + "\n";
 }
 

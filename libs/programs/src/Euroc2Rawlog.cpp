@@ -9,6 +9,7 @@
 #include "CommandLine.h"
 #include "ProgramMain.h"
 #include "RecordingOptions.h"
+#include "StopSignals.h"
 #include "lintel/reporting/Progress.h"
 #include "lintel/sensing/EurocToRawlog.h"
 
@@ -51,9 +52,12 @@ class Euroc2Rawlog {
   }
 
   EurocToRawlogSummary convert() {
+    const StopSignals stop;
     Progress progress(err_, progressStyleFor(err_, quiet_), "writing " + output_, "images", 0);
-    return eurocToRawlog(input_, output_, params_,
-                         [&](std::size_t done, std::size_t total) { progress.update(done, total); });
+    return eurocToRawlog(input_, output_, params_, [&](std::size_t done, std::size_t total) {
+      stop.check();
+      progress.update(done, total);
+    });
   }
 
   void print(const EurocToRawlogSummary& summary) const {

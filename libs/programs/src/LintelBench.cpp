@@ -13,6 +13,7 @@
 
 #include "CommandLine.h"
 #include "ProgramMain.h"
+#include "StopSignals.h"
 #include "lintel/bench/BenchPage.h"
 #include "lintel/bench/BenchRunner.h"
 #include "lintel/bench/BenchTables.h"
@@ -74,8 +75,17 @@ class LintelBench {
     if (jobs_.empty())
       throw SuiteError(suite_file_ + ": none of its recordings was found; name their folder with --recordings");
     if (print_jobs_) return printJobs();
-    if (!job_.empty()) return runOne();
-    if (!collect_) runMissing();
+    if (!collect_) {
+      const StopSignals stop;
+      try {
+        if (!job_.empty()) return runOne(stop);
+        runMissing(stop);
+      } catch (...) {
+        if (!stop.asked()) throw;
+        throw Stopped("stopped by " + stop.name() + "; what is done is kept, the same command goes on from there",
+                      stop.exitCode());
+      }
+    }
     return collect();
   }
 
@@ -142,28 +152,33 @@ class LintelBench {
     return 0;
   }
 
-  int runOne() const {
+  int runOne(const StopSignals& stop) const {
     const auto job = std::find_if(jobs_.begin(), jobs_.end(), [&](const BenchJob& j) { return j.id == job_; });
     if (job == jobs_.end()) throw UsageError("--job " + job_ + ": the suite has no such run; --print-jobs prints them");
-    const JobOutcome outcome = BenchRunner(suite_, out_folder_, programs_, vio_threads_).run(*job, retry_failed_);
+    const JobOutcome outcome = runner(stop).run(*job, retry_failed_);
     if (!quiet_) out_ << job->id << ": " << outcome.text << "\n";
     // a failed run is a result: it stands in the tables, and must not end a chain of jobs
     if (outcome.failed) err_ << kName << ": warning: " << job->id << " failed: " << outcome.text << "\n";
     return 0;
   }
 
-  void runMissing() {
+  BenchRunner runner(const StopSignals& stop) const {
+    return {suite_, out_folder_, programs_, vio_threads_, [&stop] { return stop.asked(); }};
+  }
+
+  void runMissing(const StopSignals& stop) {
     std::vector<BenchJob> missing;
     for (const BenchJob& job : jobs_)
       if (!isDone(job, retry_failed_)) missing.push_back(job);
     fs::create_directories(out_folder_);
-    const BenchRunner runner(suite_, out_folder_, programs_, vio_threads_);
+    const BenchRunner runs = runner(stop);
     Progress progress(err_, progressStyleFor(err_, quiet_), "running", "runs", jobs_.size());
     std::mutex mutex;
     std::size_t done = jobs_.size() - missing.size();
     JobPool(missing, workers_, [&](const BenchJob& job) {
       const auto start = std::chrono::steady_clock::now();
-      const JobOutcome outcome = runner.run(job, retry_failed_);
+      stop.check();
+      const JobOutcome outcome = runs.run(job, retry_failed_);
       const double wall_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
       const std::lock_guard<std::mutex> lock(mutex);
       ++done;

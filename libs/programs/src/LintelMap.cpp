@@ -13,6 +13,7 @@
 #include "CommandLine.h"
 #include "ProgramMain.h"
 #include "RecordingOptions.h"
+#include "StopSignals.h"
 #include "lintel/exporting/ColmapImages.h"
 #include "lintel/exporting/MapExport.h"
 #include "lintel/mapping/MapFile.h"
@@ -61,8 +62,12 @@ class LintelMap {
     checkOutputs();
     const ExportParams params = exportParams();
     const LineMap map = readMap(input_);
-    for (const std::string& output : outputs_) report(exportMap(map, output, params));
-    if (!images_of_.empty()) writeImages(map);
+    const StopSignals stop;
+    for (const std::string& output : outputs_) {
+      checkNotStopped(stop, output);
+      report(exportMap(map, output, params));
+    }
+    if (!images_of_.empty()) writeImages(map, stop);
     return 0;
   }
 
@@ -125,9 +130,15 @@ class LintelMap {
     line_.flag("-q,--quiet", quiet_, "Print nothing");
   }
 
-  void writeImages(const LineMap& map) {
+  /// A file that is begun is finished: it takes seconds at most.
+  static void checkNotStopped(const StopSignals& stop, const std::string& next) {
+    if (stop.asked()) throw Stopped("stopped by " + stop.name() + " before " + next, stop.exitCode());
+  }
+
+  void writeImages(const LineMap& map, const StopSignals& stop) {
     const auto recording = openRecording(images_of_, recording_params_);
     const auto next = [&]() -> std::optional<Frame> {
+      checkNotStopped(stop, "the last images");
       auto step = recording->next();
       if (!step) return std::nullopt;
       return step->frame;

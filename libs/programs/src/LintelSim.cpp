@@ -10,6 +10,8 @@
 
 #include "CommandLine.h"
 #include "ProgramMain.h"
+#include "StopSignals.h"
+#include "lintel/core/FolderLock.h"
 #include "lintel/reporting/Progress.h"
 #include "lintel/simulation/Simulation.h"
 
@@ -133,14 +135,42 @@ class LintelSim {
   /// Written beside the folder, then renamed: the folder is never half a recording.
   SimulationSummary write(const Simulation& simulation, const fs::path& folder) const {
     const fs::path part = folder.string() + ".part";
-    if (fs::exists(part / "mav0") || (fs::is_directory(part) && fs::is_empty(part))) fs::remove_all(part);
-    if (fs::exists(part)) throw std::runtime_error(part.string() + ": is in the way; move it");
+    const bool left_behind = fs::exists(part / "mav0") || (fs::is_directory(part) && fs::is_empty(part));
+    if (fs::exists(part) && !left_behind) throw std::runtime_error(part.string() + ": is in the way; move it");
+    fs::create_directories(part);
+    const FolderLock lock(part.string());
+    fs::remove_all(part / "mav0");
+    try {
+      const SimulationSummary summary = render(simulation, part);
+      replace(folder, part);
+      return summary;
+    } catch (...) {
+      std::error_code ignored;
+      fs::remove_all(part, ignored);
+      throw;
+    }
+  }
+
+  SimulationSummary render(const Simulation& simulation, const fs::path& part) const {
+    const StopSignals stop;
     Progress progress(err_, progressStyleFor(err_, quiet_), "rendering", "frames", simulation.images());
-    const SimulationSummary summary = simulation.write(part.string(), [&](std::size_t done) { progress.update(done); });
+    const SimulationSummary summary = simulation.write(part.string(), [&](std::size_t done) {
+      stop.check();
+      progress.update(done);
+    });
     progress.clear();
-    if (fs::exists(folder)) fs::remove_all(folder);
-    fs::rename(part, folder);
     return summary;
+  }
+
+  /// `part` takes the place of the folder; what was there is removed when that is done.
+  static void replace(const fs::path& folder, const fs::path& part) {
+    const fs::path old = folder.string() + ".old";
+    if (fs::exists(folder)) {
+      fs::remove_all(old);
+      fs::rename(folder, old);
+    }
+    fs::rename(part, folder);
+    fs::remove_all(old);
   }
 
   void print(const SimulationSummary& s, const fs::path& folder) const {

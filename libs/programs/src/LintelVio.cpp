@@ -16,6 +16,8 @@
 #include "ProgramMain.h"
 #include "RecordingInfo.h"
 #include "RecordingOptions.h"
+#include "RunFolder.h"
+#include "StopSignals.h"
 #include "lintel/core/AtomicFile.h"
 #include "lintel/exporting/MapExport.h"
 #include "lintel/pages/RunReport.h"
@@ -50,18 +52,26 @@ class LintelVio {
     if (info_) return printInfo();
     checkCommandLine();
     auto recording = openRecording(input_, recording_params_);
-    prepareOutput();
+    const StopSignals stop;
+    const RunFolder folder(output_, overwrite_);
+    makeTracksFolder();
+    checkpoint_.emplace(output_, checkpoint_s_);
     costs_.once_ms.emplace_back("start of the program", processTimeMs());
     const auto start = std::chrono::steady_clock::now();
-    const OdometryResult result = process(*recording, configuration);
+    OdometryResult result = process(*recording, configuration, stop);
     const double wall_s = costs_.wall_s =
         std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
     if (result.statistics.frames == 0 && !result.error.empty()) throw RecordingError(result.error);
     std::vector<std::string> warnings = recording->warnings();
     warnings.insert(warnings.end(), result.remarks.begin(), result.remarks.end());
     for (const std::string& warning : warnings) err_ << kName << ": warning: " << warning << "\n";
+    if (result.cancelled && result.trajectory.empty()) stop.check();
+    if (result.cancelled) result.error = stoppedBy(stop, result);
     writeOutput(result, warnings);
+    checkpoint_->remove();
     if (!quiet_) summarise(result, wall_s);
+    if (result.cancelled)
+      throw Stopped(result.error + "; trajectory and map until then are in " + output_, stop.exitCode());
     if (!result.error.empty())
       throw RecordingError(result.error + " (what was computed until then is in " + output_ + ")");
     if (!result.verdict.empty()) throw std::runtime_error(input_ + ": not to be trusted: " + result.verdict);
@@ -114,6 +124,13 @@ class LintelVio {
         .type("EXT,...");
     line_.option("--draw-tracks", draw_tracks_, "Write every frame with its points and lines as a PNG to this folder")
         .type("DIR");
+    line_
+        .option(
+            "--checkpoint", checkpoint_s_,
+            "Save the poses so far this often to OUT/trajectory.partial.tum, until the results are written [s]; 0 = "
+            "never")
+        .notNegative()
+        .showDefault();
     line_.flag("--no-refine", no_refine_, "Leave out the batch adjustment after the last frame");
     line_.flag("-w,--overwrite", overwrite_, "Write into OUT although it holds the results of an earlier run");
     line_.flag("-q,--quiet", quiet_, "No progress, no summary");
@@ -148,27 +165,27 @@ class LintelVio {
     if (threads_ == 1) recording_params_.frames_ahead = 0;
   }
 
-  void prepareOutput() const {
-    const fs::path out(output_);
-    if (fs::exists(out / "trajectory.tum") && !overwrite_)
-      throw std::runtime_error(output_ + ": holds the results of an earlier run; choose another folder or add -w");
+  void makeTracksFolder() const {
     std::error_code error;
-    fs::create_directories(out, error);
-    if (error) throw std::runtime_error(output_ + ": cannot be made: " + error.message() + "; choose another folder");
     if (!draw_tracks_.empty()) fs::create_directories(draw_tracks_, error);
     if (error) throw std::runtime_error(draw_tracks_ + ": cannot be made: " + error.message());
   }
 
-  OdometryResult process(Recording& recording, const Configuration& configuration) {
+  OdometryResult process(Recording& recording, const Configuration& configuration, const StopSignals& stop) {
     Progress progress(err_, progressStyleFor(err_, quiet_), "processing", "frames", recording.expectedFrames());
     std::optional<Progress> refining;
     calibration_ = recording.rig();
     RunOptions options;
     options.threads = threads_;
+    options.cancelled = [&] {
+      if (stop.asked()) checkpoint_->flush();  // before the map is made, which takes longest
+      return stop.asked();
+    };
     options.progress = [&](const RunProgress& run) {
       if (run.stage == RunStage::kFrames) return progress.update(run.done);
       if (!refining) {
         progress.clear();
+        checkpoint_->flush();
         refining.emplace(err_, progressStyleFor(err_, quiet_), "refining", "%", run.total);
       }
       refining->update(run.done);
@@ -176,12 +193,25 @@ class LintelVio {
     options.observer = [&](const Frame& frame, const FrameTracks& tracks, const WindowUpdate& update,
                            std::size_t done) {
       series_.add(tracks, update);
+      if (update.hasPose()) checkpoint_->add({update.t_ns, update.T_w_b});
       if (draw_tracks_.empty()) return;
       char name[32];
       std::snprintf(name, sizeof name, "%06zu.png", done - 1);
       drawTracks((fs::path(draw_tracks_) / name).string(), frame, calibration_, tracks);
     };
-    return runOdometry(recording, configuration, options);
+    OdometryResult result = runOdometry(recording, configuration, options);
+    checkpoint_->flush();
+    if (!checkpoint_->fault().empty()) result.remarks.push_back(checkpoint_->fault());
+    return result;
+  }
+
+  /// What is said of a run that a signal has ended.
+  static std::string stoppedBy(const StopSignals& stop, const OdometryResult& result) {
+    const OdometryStatistics& s = result.statistics;
+    char text[80];
+    std::snprintf(text, sizeof text, "stopped by %s after %.1f s of the recording", stop.name().c_str(),
+                  1e-9 * static_cast<double>(s.last_frame_ns - s.first_frame_ns));
+    return text;
   }
 
   void writeOutput(const OdometryResult& result, const std::vector<std::string>& warnings) {
@@ -264,6 +294,8 @@ class LintelVio {
   RunSeries series_;
   RunCosts costs_;
   Rig calibration_;
+  std::optional<TrajectoryCheckpoint> checkpoint_;
+  double checkpoint_s_ = 5;
   int threads_ = 2;
   bool no_refine_ = false, overwrite_ = false, quiet_ = false, dump_config_ = false, info_ = false;
 };

@@ -5,6 +5,9 @@
 #include <csignal>
 #include <new>
 #include <ostream>
+#include <system_error>
+
+#include "StopSignals.h"
 
 namespace lintel {
 
@@ -16,13 +19,21 @@ std::string oneLine(std::string text) {
 
 int programMain(const std::string& name, std::ostream& err, const std::function<int()>& body) {
   std::signal(SIGXFSZ, SIG_IGN);  // a file over the user's limit is an error of writing, not a sudden end
+  std::signal(SIGPIPE, SIG_IGN);  // Ctrl-C ends `| tee` first: the results are written all the same
   try {
     return body();
+  } catch (const Stopped& stopped) {
+    err << name << ": " << stopped.what() << "\n";
+    return stopped.exitCode();
   } catch (const UsageError& error) {
     err << name << ": " << oneLine(error.what()) << "; see " << name << " --help\n";
     return 2;
   } catch (const std::bad_alloc&) {
     err << name << ": out of memory; free some, or give a shorter part of the recording\n";
+  } catch (const std::system_error& error) {
+    err << name << ": " << oneLine(error.what());
+    if (error.code() == std::errc::resource_unavailable_try_again) err << ": a thread was refused; free some memory";
+    err << "\n";
   } catch (const std::exception& error) {
     err << name << ": " << oneLine(error.what()) << "\n";
   }

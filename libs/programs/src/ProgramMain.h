@@ -15,7 +15,7 @@ class UsageError : public std::runtime_error {
 };
 
 /// Runs a program's body and returns its exit code. What the body throws becomes one line "name: what" on `err` and
-/// exit code 2 (UsageError) or 1 (anything else). Never throws.
+/// exit code 2 (UsageError), 128 and the signal's number (Stopped) or 1 (anything else). Never throws.
 int programMain(const std::string& name, std::ostream& err, const std::function<int()>& body);
 
 /// `text` without line feeds, for a message of one line.

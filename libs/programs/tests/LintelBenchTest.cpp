@@ -92,6 +92,19 @@ class LintelBenchProgram : public ::testing::Test {
   std::ostringstream out_, err_;
 };
 
+TEST_F(LintelBenchProgram, ASignalEndsTheRunsAndKeepsThoseThatAreDone) {
+  ASSERT_EQ(run({"-j", "1", "--job", "whole/points/from0"}), 0) << err_.str();
+  const std::string vio = folder_ / "bin/lintel-vio", works = bytesOf(vio);
+  std::ofstream(vio) << "#!/bin/sh\nkill -TERM $PPID\nexec sleep 1000\n";
+  EXPECT_EQ(run({"-j", "2", "-q"}), 143);
+  EXPECT_THAT(err_.str(), HasSubstr("stopped by SIGTERM; what is done is kept"));
+  EXPECT_FALSE(fs::exists(folder_ / "out/report.html"));
+  std::ofstream(vio) << works;
+  const long before = calls();
+  EXPECT_EQ(run({"-j", "1"}), 0) << err_.str();
+  EXPECT_GT(calls(), before);
+}
+
 TEST_F(LintelBenchProgram, RunsEverythingOnceAndWritesTheTables) {
   ASSERT_EQ(run({"-j", "2"}), 0) << err_.str();
   EXPECT_EQ(calls(), 6 + 1);

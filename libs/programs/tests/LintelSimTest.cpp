@@ -2,12 +2,17 @@
 #include "lintel/programs/LintelSim.h"
 
 #include <gtest/gtest.h>
+#include <unistd.h>
 
+#include <atomic>
+#include <csignal>
 #include <filesystem>
 #include <fstream>
 #include <sstream>
+#include <thread>
 #include <vector>
 
+#include "lintel/core/FolderLock.h"
 #include "lintel/testing/TempFolder.h"
 
 namespace lintel {
@@ -49,6 +54,28 @@ TEST_F(LintelSimTest, ReplacesOnlyRecordingsAndOnlyWhenTold) {
   fs::create_directories(folder() + "/mav0");
   EXPECT_EQ(run({"-o", folder(), "--duration", "0.1", "-w", "--quiet"}), 0) << err_.str();
   EXPECT_EQ(out_.str() + err_.str(), "");
+}
+
+TEST_F(LintelSimTest, StoppedByASignalItLeavesNothing) {
+  const auto before = std::signal(SIGTERM, [](int) {});
+  std::atomic<bool> ended{false};
+  std::thread sender([&] {
+    while (!ended && !fs::exists(folder() + ".part/mav0/cam0")) std::this_thread::yield();
+    kill(getpid(), SIGTERM);
+  });
+  EXPECT_EQ(run({"-o", folder(), "--duration", "30", "--threads", "1", "-q"}), 143);
+  ended = true;
+  sender.join();
+  std::signal(SIGTERM, before);
+  EXPECT_EQ(err_.str(), "lintel-sim: stopped by SIGTERM, nothing was written\n");
+  EXPECT_EQ(folder_.entries(), 0);
+}
+
+TEST_F(LintelSimTest, OneRunAtATimeMakesAFolder) {
+  fs::create_directories(folder() + ".part");
+  const FolderLock other(folder() + ".part");
+  EXPECT_EQ(run({"-o", folder(), "--duration", "0.1"}), 1);
+  EXPECT_NE(err_.str().find("another run is writing to it"), std::string::npos) << err_.str();
 }
 
 TEST_F(LintelSimTest, WrongCommandLinesAreUsageErrors) {

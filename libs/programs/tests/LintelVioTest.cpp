@@ -3,11 +3,15 @@
 #include "lintel/programs/LintelVio.h"
 
 #include <gmock/gmock.h>
+#include <unistd.h>
 
 #include <algorithm>
+#include <atomic>
+#include <csignal>
 #include <fstream>
 #include <memory>
 #include <nlohmann/json.hpp>
+#include <thread>
 
 #include "VioTestRuns.h"
 #include "lintel/evaluation/TrajectoryErrors.h"
@@ -203,6 +207,45 @@ TEST_F(LintelVioCancelTest, ARefinementThatIsCancelledLeavesTheCausalMap) {
   ASSERT_EQ(result.map.lines.size(), causal.map.lines.size());
   for (std::size_t i = 0; i < causal.map.lines.size(); ++i)
     EXPECT_EQ(result.map.lines[i].segment_w.start, causal.map.lines[i].segment_w.start);
+}
+
+/// Sends this process a signal as soon as the run has saved poses.
+ProgramRun runStoppedBy(int signal, const std::string& recording, const std::string& out) {
+  const auto before = std::signal(signal, [](int) {});  // for a signal that comes too late
+  std::atomic<bool> ended{false};
+  std::thread sender([&] {
+    while (!ended && !fs::exists(out + "/trajectory.partial.tum")) std::this_thread::yield();
+    kill(getpid(), signal);
+  });
+  const ProgramRun run = runVio(
+      {recording, "-o", out, "-c", eurocConfig(), "--export", "none", "--checkpoint", "0.001", "--threads", "1", "-q"});
+  ended = true;
+  sender.join();
+  std::signal(signal, before);
+  return run;
+}
+
+TEST_F(LintelVioTest, ASignalEndsTheRunWithWhatThereIs) {
+  for (const auto& [signal, name] : {std::pair<int, std::string>{SIGINT, "SIGINT"}, {SIGTERM, "SIGTERM"}}) {
+    SCOPED_TRACE(name);
+    const ProgramRun r = runStoppedBy(signal, recording(), out(name));
+    EXPECT_EQ(r.exit_code, 128 + signal);
+    expectOneLine(r, "stopped by " + name + " after ");
+    EXPECT_THAT(r.err, HasSubstr("trajectory and map until then are in " + out(name)));
+    const auto statistics = nlohmann::json::parse(bytesOf(out(name) + "/stats.json"));
+    EXPECT_EQ(statistics["partial"], true);
+    EXPECT_THAT(statistics["ended_early"].get<std::string>(), StartsWith("stopped by " + name));
+    EXPECT_THAT(bytesOf(out(name) + "/report.html"), HasSubstr("stopped by " + name));
+    const StampedPoses part = readTrajectory(out(name) + "/trajectory.tum");
+    const StampedPoses whole = readTrajectory(out("reference") + "/trajectory.tum");
+    ASSERT_FALSE(part.empty());
+    ASSERT_LE(part.size(), whole.size());
+    for (std::size_t i = 0; i < part.size(); ++i) EXPECT_EQ(part[i].second.p, whole[i].second.p) << "pose " << i;
+    EXPECT_EQ(readMap(out(name) + "/map.lintel").trajectory.size(), part.size());
+    EXPECT_FALSE(fs::exists(out(name) + "/trajectory.partial.tum"));
+    EXPECT_FALSE(fs::exists(out(name) + "/trajectory_refined.tum"));
+  }
+  EXPECT_EQ(nlohmann::json::parse(bytesOf(out("reference") + "/stats.json"))["partial"], false);
 }
 
 TEST_F(LintelVioTest, ThreadsDoNotChangeAByte) {

@@ -5,6 +5,9 @@
 
 #include <new>
 #include <sstream>
+#include <system_error>
+
+#include "StopSignals.h"
 
 namespace lintel {
 namespace {
@@ -23,6 +26,13 @@ TEST(ProgramMain, TurnsExceptionsIntoOneLineAndAnExitCode) {
   err.str("");
   EXPECT_EQ(programMain("prog", err, []() -> int { throw std::bad_alloc(); }), 1);
   EXPECT_THAT(err.str(), StartsWith("prog: out of memory"));
+  err.str("");
+  EXPECT_EQ(programMain("prog", err, []() -> int { throw std::system_error(std::make_error_code(std::errc(EAGAIN))); }),
+            1);
+  EXPECT_EQ(err.str(), "prog: Resource temporarily unavailable: a thread was refused; free some memory\n");
+  err.str("");
+  EXPECT_EQ(programMain("prog", err, []() -> int { throw Stopped("stopped by SIGTERM", 143); }), 143);
+  EXPECT_EQ(err.str(), "prog: stopped by SIGTERM\n");
 }
 
 }  // namespace

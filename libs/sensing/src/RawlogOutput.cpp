@@ -2,6 +2,7 @@
 #include "RawlogOutput.h"
 
 #include <filesystem>
+#include <fstream>
 #include <stdexcept>
 
 namespace lintel {
@@ -28,9 +29,10 @@ RawlogOutput::RawlogOutput(const std::string& rawlog, bool external_images, bool
   const fs::path parent = fs::absolute(path).parent_path();
   if (!fs::is_directory(parent)) throw std::runtime_error(parent.string() + ": no such folder: create it first");
   checkExisting(overwrite);
-  removeParts();
-  if (!external_images_) return;
+  lockFile();
   std::error_code error;
+  fs::remove_all(imagesFolder(), error);
+  if (!external_images_) return;
   fs::create_directory(imagesFolder(), error);
   if (error) throw std::runtime_error(imagesFolder() + ": cannot be created: " + error.message());
 }
@@ -44,13 +46,24 @@ void RawlogOutput::checkExisting(bool overwrite) const {
     throw std::runtime_error(images_ + ": exists already, without its rawlog: remove it or choose another name");
 }
 
+/// The file is made for it: it is written anew in any case.
+void RawlogOutput::lockFile() {
+  std::ofstream(file(), std::ios::app);
+  std::error_code error;
+  if (!fs::exists(file(), error))
+    throw std::runtime_error(file() + ": cannot be made: choose a place you may write to");
+  lock_.emplace(file());
+}
+
 void RawlogOutput::removeParts() const {
   std::error_code ignored;
   fs::remove(file(), ignored);
   fs::remove_all(imagesFolder(), ignored);
 }
 
-RawlogOutput::~RawlogOutput() { removeParts(); }
+RawlogOutput::~RawlogOutput() {
+  if (!committed_) removeParts();
+}
 
 void RawlogOutput::commit() {
   const std::string old_images = images_ + ".old";
@@ -68,6 +81,7 @@ void RawlogOutput::commit() {
     if (replace) fs::rename(old_images, images_, ignored);
     throw;
   }
+  committed_ = true;
   if (replace) fs::remove_all(old_images, ignored);
 }
 

@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <optional>
 #include <string>
+
+#include "lintel/core/FolderLock.h"
 
 namespace lintel {
 
@@ -9,8 +12,8 @@ namespace lintel {
 /// when all is done and vanish otherwise.
 class RawlogOutput {
  public:
-  /// Throws std::runtime_error when the name does not end in .rawlog, the files exist and must not be replaced, or the
-  /// folder is missing.
+  /// Throws std::runtime_error when the name does not end in .rawlog, the files exist and must not be replaced, the
+  /// folder is missing, or another run is writing the same rawlog.
   RawlogOutput(const std::string& rawlog, bool external_images, bool overwrite);
   ~RawlogOutput();
   RawlogOutput(const RawlogOutput&) = delete;
@@ -25,10 +28,12 @@ class RawlogOutput {
 
  private:
   void checkExisting(bool overwrite) const;
+  void lockFile();
   void removeParts() const;
 
   std::string rawlog_, images_;
-  bool external_images_;
+  bool external_images_, committed_ = false;
+  std::optional<FolderLock> lock_;  // of file()
 };
 
 }  // namespace lintel

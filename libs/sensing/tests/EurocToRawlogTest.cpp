@@ -11,6 +11,7 @@
 #include "RawlogFile.h"
 #include "TinyEuroc.h"
 #include "TinyRawlog.h"
+#include "lintel/core/FolderLock.h"
 
 namespace lintel::test {
 namespace {
@@ -137,6 +138,17 @@ TEST_F(EurocToRawlogTest, NothingIsOverwrittenUnasked) {
   EXPECT_EQ(error(params), "");
   EXPECT_EQ(error(params), "");
   EXPECT_THAT(written(), ElementsAre("flight.rawlog", "flight_Images"));
+}
+
+TEST_F(EurocToRawlogTest, OneRunAtATimeWritesARawlog) {
+  writeText(rawlog_ + ".part", "");
+  {
+    const FolderLock other(rawlog_ + ".part");
+    EXPECT_THAT(error(), HasSubstr("another run is writing to it"));
+    EXPECT_TRUE(fs::exists(rawlog_ + ".part")) << "it is the other's";
+  }
+  EXPECT_EQ(error(), "") << "what a killed run left is no obstacle";
+  EXPECT_FALSE(fs::exists(rawlog_ + ".part"));
 }
 
 TEST_F(EurocToRawlogTest, AFolderOfSomebodyElseIsNeverReplaced) {

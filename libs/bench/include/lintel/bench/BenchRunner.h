@@ -2,6 +2,7 @@
 #pragma once
 
 #include <filesystem>
+#include <functional>
 #include <string>
 
 #include "lintel/bench/BenchJobs.h"
@@ -23,8 +24,10 @@ bool isDone(const BenchJob& job, bool retry_failed = false);
 /// at the same time, on machines that share the folder.
 class BenchRunner {
  public:
-  /// `programs`: folder of the other programs. `vio_threads`: of each lintel-vio and lintel-sim.
-  BenchRunner(const BenchSuite& suite, std::filesystem::path out, std::filesystem::path programs, int vio_threads);
+  /// `programs`: folder of the other programs. `vio_threads`: of each lintel-vio and lintel-sim. `stop`: asked while a
+  /// program runs, may be empty; true ends it, and the job has no result.
+  BenchRunner(const BenchSuite& suite, std::filesystem::path out, std::filesystem::path programs, int vio_threads,
+              std::function<bool()> stop = {});
 
   /// Throws std::runtime_error on what no job could go on with (a full disk).
   JobOutcome run(const BenchJob& job, bool retry_failed = false) const;
@@ -40,6 +43,7 @@ class BenchRunner {
   const BenchSuite& suite_;
   std::filesystem::path out_, programs_;
   int vio_threads_;
+  std::function<bool()> stop_;
 };
 
 }  // namespace lintel

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -12,6 +13,7 @@ struct ChildRequest {
   std::string input;                     ///< what it reads on standard input
   std::string log_path;                  ///< standard output and error are appended here; empty: both are returned
   std::vector<std::string> environment;  ///< NAME=VALUE, added to this process' own
+  std::function<bool()> stop = {};       ///< asked while it runs, from this thread: true sends it SIGTERM; may be empty
 };
 
 struct ChildResult {
