@@ -9,6 +9,8 @@
 #include <memory>
 #include <set>
 
+#include "lintel/core/TextFile.h"
+
 namespace lintel {
 
 namespace {
@@ -43,9 +45,7 @@ class SuiteReader {
  public:
   SuiteReader(const std::string& file, const std::string& folder) : file_(file), folder_(folder) {
     try {
-      root_ = YAML::LoadFile(file);
-    } catch (const YAML::BadFile&) {
-      throw SuiteError(file + ": cannot be read; check the name and its permissions");
+      root_ = YAML::Load(textOfFile(file, [](const std::string& what) { throw SuiteError(what); }));
     } catch (const YAML::Exception& e) {
       throw SuiteError(file + ":" + std::to_string(e.mark.line + 1) + ": is not YAML: " + e.msg);
     }
@@ -58,7 +58,7 @@ class SuiteReader {
     suite.name = fs::path(file_).stem().string();
     if (root_["name"]) suite.name = nameOf(root_["name"]);
     suite.title = root_["title"] ? as<std::string>(root_["title"]) : suite.name;
-    if (root_["starts_s"]) suite.starts_s = asList<double>(root_["starts_s"]);
+    if (root_["starts_s"]) suite.starts_s = startsIn(root_["starts_s"]);
     if (root_["seeds"]) seeds_ = asList<std::uint64_t>(root_["seeds"]);
     if (root_["notes"]) suite.notes = asList<std::string>(root_["notes"]);
     if (root_["config"]) config_ = besideSuite(root_["config"]);
@@ -83,7 +83,8 @@ class SuiteReader {
     try {
       return node.as<T>();
     } catch (const YAML::Exception&) {
-      fail(node, "'" + YAML::Dump(node) + "' is of the wrong kind here");
+      const std::string what = node.IsScalar() ? "'" + node.Scalar() + "'" : node.IsSequence() ? "a list" : "a map";
+      fail(node, what + " is of the wrong kind here");
     }
   }
 
@@ -92,6 +93,13 @@ class SuiteReader {
     const auto list = as<std::vector<T>>(node);
     if (list.empty()) fail(node, "an empty list");
     return list;
+  }
+
+  std::vector<double> startsIn(const YAML::Node& node) const {
+    const auto starts_s = asList<double>(node);
+    for (const double start_s : starts_s)
+      if (!(start_s >= 0 && start_s < 1e9)) fail(node, "starts_s must be seconds after the first frame");
+    return starts_s;
   }
 
   void checkKeys(const YAML::Node& node, const std::set<std::string>& known) const {

@@ -12,6 +12,7 @@ namespace lintel {
 namespace {
 
 constexpr const char* kBlanks = " \t\r";
+constexpr std::size_t kLongestLine = 1000000;
 
 std::string_view trimmed(std::string_view text) {
   const auto first = text.find_first_not_of(kBlanks);
@@ -35,9 +36,28 @@ TextRows::TextRows(std::string path, Throw throw_error)
   if (!in_) raise(path_ + ": cannot be opened (" + std::strerror(errno) + "); check the name");
 }
 
+/// The next line; a longer one than any table has is not taken into memory.
+bool TextRows::readLine() {
+  line_.clear();
+  try {
+    while (true) {
+      const int c = in_.rdbuf()->sbumpc();
+      if (c == '\n') return true;
+      if (c == std::char_traits<char>::eof()) break;
+      if (line_.size() == kLongestLine) fail("a line of more than a million characters; give a text file");
+      line_ += static_cast<char>(c);
+    }
+    in_.setstate(std::ios::eofbit);
+  } catch (const std::ios_base::failure&) {  // a folder, for example
+    in_.setstate(std::ios::badbit);
+  }
+  return !line_.empty() && !in_.bad();
+}
+
 bool TextRows::next(bool skip_comments) {
-  while (std::getline(in_, line_)) {
+  while (readLine()) {
     ++line_number_;
+    if (line_number_ == 1 && line_.rfind("\xef\xbb\xbf", 0) == 0) line_.erase(0, 3);  // byte order mark
     const std::string_view text = trimmed(line_);
     if (text.empty() || (skip_comments && text.front() == '#')) continue;
     split();

@@ -10,6 +10,8 @@
 #include <sstream>
 #include <type_traits>
 
+#include "lintel/core/TextFile.h"
+
 namespace lintel {
 
 namespace {
@@ -37,8 +39,8 @@ class Reader {
       try {
         value = child.as<T>();
       } catch (const YAML::Exception&) {
-        throw ConfigurationError(where(child) + path_ + key + " must be " + typeName<T>() + ", not '" +
-                                 YAML::Dump(child) + "'");
+        throw ConfigurationError(where(child) + path_ + key + " must be " + typeName<T>() + ", not " +
+                                 (child.IsScalar() ? "'" + child.Scalar() + "'" : "a list or map"));
       }
       try {
         if constexpr (sizeof...(Allowed) == 1) checkAllowed(path_ + key, value, allowed...);
@@ -54,8 +56,11 @@ class Reader {
   }
 
   void refuseUnknown() const {
+    std::set<std::string> seen;
     for (const auto& entry : node_) {
-      const std::string key = entry.first.as<std::string>();
+      if (!entry.first.IsScalar()) throw ConfigurationError(where(entry.first) + "a key is a word, no list or map");
+      const std::string key = entry.first.Scalar();
+      if (!seen.insert(key).second) throw ConfigurationError(where(entry.first) + path_ + key + " is given twice");
       if (known_.count(key) > 0) continue;
       std::string list;
       for (const std::string& k : known_) list += (list.empty() ? "" : " ") + k;
@@ -117,9 +122,7 @@ void apply(const YAML::Node& root, const std::string& source, Configuration& con
 void readConfiguration(const std::string& path, Configuration& configuration) {
   YAML::Node root;
   try {
-    root = YAML::LoadFile(path);
-  } catch (const YAML::BadFile&) {
-    throw ConfigurationError(path + ": cannot be read; check the name and its permissions");
+    root = YAML::Load(textOfFile(path, [](const std::string& what) { throw ConfigurationError(what); }));
   } catch (const YAML::Exception& e) {
     throw ConfigurationError(path + ":" + std::to_string(e.mark.line + 1) + ": is not YAML: " + e.msg);
   }

@@ -27,7 +27,7 @@ class Euroc2Rawlog {
     if (std::filesystem::path(output_).extension() != ".rawlog")
       throw UsageError("-o must name a file ending in .rawlog");
     const EurocToRawlogSummary summary = convert();
-    for (const std::string& warning : summary.warnings) err_ << kName << ": warning: " << warning << "\n";
+    for (const std::string& warning : summary.warnings) err_ << kName << ": warning: " << oneLine(warning) << "\n";
     if (!quiet_) print(summary);
     return 0;
   }

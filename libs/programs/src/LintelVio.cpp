@@ -64,7 +64,7 @@ class LintelVio {
     if (result.statistics.frames == 0 && !result.error.empty()) throw RecordingError(result.error);
     std::vector<std::string> warnings = recording->warnings();
     warnings.insert(warnings.end(), result.remarks.begin(), result.remarks.end());
-    for (const std::string& warning : warnings) err_ << kName << ": warning: " << warning << "\n";
+    for (const std::string& warning : warnings) err_ << kName << ": warning: " << oneLine(warning) << "\n";
     if (result.cancelled && result.trajectory.empty()) stop.check();
     if (result.cancelled) result.error = stoppedBy(stop, result);
     writeOutput(result, warnings);

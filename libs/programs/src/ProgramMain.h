@@ -18,7 +18,7 @@ class UsageError : public std::runtime_error {
 /// exit code 2 (UsageError), 128 and the signal's number (Stopped) or 1 (anything else). Never throws.
 int programMain(const std::string& name, std::ostream& err, const std::function<int()>& body);
 
-/// `text` without line feeds, for a message of one line.
+/// `text` without line feeds and other control characters, for a message of one line.
 std::string oneLine(std::string text);
 
 }  // namespace lintel

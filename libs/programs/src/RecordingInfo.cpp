@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "RecordingInfo.h"
 
+#include "ProgramMain.h"
+
 #include <filesystem>
 #include <iomanip>
 #include <ostream>
@@ -38,7 +40,7 @@ void printRecordingInfo(const InfoRequest& request, std::ostream& out, std::ostr
   if (!request.recording.empty()) printSensors(request.recording, request.params, out);
   const RigReport report = reportRig(request.recording, request.params);
   out << rigInWords(report.rig, report.time_shift_s);
-  for (const std::string& warning : report.warnings) err << "lintel-vio: warning: " << warning << "\n";
+  for (const std::string& warning : report.warnings) err << "lintel-vio: warning: " << oneLine(warning) << "\n";
   if (request.save_calibration.empty()) return;
   AtomicFile::writeWhole(request.save_calibration, writeCalibration(report.rig, report.time_shift_s, request.form));
 }

@@ -20,6 +20,7 @@ TEST(ProgramMain, TurnsExceptionsIntoOneLineAndAnExitCode) {
   EXPECT_EQ(err.str(), "");
   EXPECT_EQ(programMain("prog", err, []() -> int { throw std::runtime_error("file:3: bad\nremove it\n"); }), 1);
   EXPECT_EQ(err.str(), "prog: file:3: bad remove it\n");
+  EXPECT_EQ(oneLine("a\x1b[31mb"), "a?[31mb");
   err.str("");
   EXPECT_EQ(programMain("prog", err, []() -> int { throw UsageError("--a needs --b"); }), 2);
   EXPECT_EQ(err.str(), "prog: --a needs --b; see prog --help\n");

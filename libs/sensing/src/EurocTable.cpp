@@ -19,6 +19,9 @@ bool EurocTable::next(const WarningSink& warn) {
   const std::size_t fields = rows_.commaSeparated() ? rows_.fields().size() : 1;
   if (fields < min_fields_)
     return refuse(std::to_string(fields) + " fields, expected " + std::to_string(min_fields_), warn);
+  if (fields_before_ == 0) fields_before_ = fields;
+  if (fields != fields_before_)
+    return refuse(std::to_string(fields) + " fields, the rows before have " + std::to_string(fields_before_), warn);
   const std::optional<std::int64_t> time = rows_.integerIfAny(0);
   if (!time || *time < 0) return refuse("'" + std::string(field(0)) + "' is no time in nanoseconds", warn);
   time_ns_ = *time;

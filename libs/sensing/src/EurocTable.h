@@ -32,7 +32,7 @@ class EurocTable {
   bool refuse(const std::string& what, const WarningSink& warn) const;
 
   TextRows rows_;
-  std::size_t min_fields_;
+  std::size_t min_fields_, fields_before_ = 0;
   std::int64_t time_ns_ = 0;
 };
 

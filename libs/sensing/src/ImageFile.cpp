@@ -49,6 +49,7 @@ GrayImage decodeGrayImage(const std::vector<std::uint8_t>& bytes, const std::str
 GrayImage readGrayImage(const std::string& path) {
   std::error_code ignored;
   if (!std::filesystem::exists(path, ignored)) throw ImageFault(path + ": image file missing");
+  if (!std::filesystem::is_regular_file(path, ignored)) throw ImageFault(path + ": no file");
   return decodeGrayImage(bytesOf(path), path);
 }
 

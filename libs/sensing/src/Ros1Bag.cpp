@@ -5,6 +5,7 @@
 #include <map>
 
 #include "Bag.h"
+#include "Ros1Check.h"
 #include "lintel/sensing/Recording.h"
 
 namespace lintel {
@@ -68,6 +69,7 @@ class Ros1Reader final : public BagReader {
 class Ros1Bag final : public Bag {
  public:
   explicit Ros1Bag(const std::string& path) : path_(path) {
+    check();
     const auto bag = openForReading(path);
     readingBag(path, [&] { list(*bag); });
   }
@@ -78,6 +80,16 @@ class Ros1Bag final : public Bag {
   }
 
  private:
+  /// Before the library reads what it would take for granted.
+  void check() const {
+    try {
+      checkRos1Bag(path_);
+    } catch (const std::exception& error) {
+      throw RecordingError(path_ + ": no ROS 1 bag, or cut or damaged (" + error.what() +
+                           "): repair it with rosbag reindex");
+    }
+  }
+
   void list(const rosbag::Bag& bag) {
     rosbag::View all(bag);
     std::map<std::string, std::string> types;

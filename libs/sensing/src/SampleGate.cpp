@@ -1,9 +1,17 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "SampleGate.h"
 
+#include <algorithm>
+
 #include "TimeTicks.h"
 
 namespace lintel {
+
+namespace {
+
+constexpr double kBeyondAnySensor = 1e6;  // rad/s, m/s^2: raw counts are less and have a check of their own
+
+}  // namespace
 
 bool StampGate::admit(std::int64_t t_ns, const std::function<std::string()>& where, const WarningSink& warn) {
   if (t_ns > last_ns_) {
@@ -16,8 +24,11 @@ bool StampGate::admit(std::int64_t t_ns, const std::function<std::string()>& whe
 }
 
 bool ImuGate::admit(const ImuSample& sample, const std::function<std::string()>& where, const WarningSink& warn) {
-  if (sample.gyro.allFinite() && sample.accel.allFinite()) return stamps_.admit(sample.t_ns, where, warn);
-  warn(Fault::ImuValue, where() + ": IMU sample at " + secondsText(sample.t_ns) + " is not finite: skipped");
+  const bool finite = sample.gyro.allFinite() && sample.accel.allFinite();
+  if (finite && std::max(sample.gyro.cwiseAbs().maxCoeff(), sample.accel.cwiseAbs().maxCoeff()) < kBeyondAnySensor)
+    return stamps_.admit(sample.t_ns, where, warn);
+  warn(Fault::ImuValue, where() + ": IMU sample at " + secondsText(sample.t_ns) +
+                            (finite ? " is beyond what any sensor measures: skipped" : " is not finite: skipped"));
   return false;
 }
 

@@ -6,14 +6,16 @@
 #include <fstream>
 #include <sstream>
 
+#include "lintel/core/TextFile.h"
+
 namespace lintel {
 namespace {
 
 /// Without what is no YAML: OpenCV's first line "%YAML:1.0", and tabs, which people put into OpenCV's files.
-std::string readableYaml(std::ifstream& file) {
-  std::ostringstream text;
-  for (std::string line; std::getline(file, line);) text << (line.rfind('%', 0) == 0 ? "" : line) << '\n';
-  std::string yaml = text.str();
+std::string readableYaml(const std::string& text) {
+  std::istringstream in(text);
+  std::string yaml;
+  for (std::string line; std::getline(in, line);) (line.rfind('%', 0) == 0 ? yaml : yaml += line) += '\n';
   std::replace(yaml.begin(), yaml.end(), '\t', ' ');
   return yaml;
 }
@@ -21,10 +23,10 @@ std::string readableYaml(std::ifstream& file) {
 }  // namespace
 
 YamlFile::YamlFile(const std::string& path, const std::string& absent) : path_(path) {
-  std::ifstream file(path);
-  if (!file) throw RecordingError(path + ": missing: " + absent);
+  if (!std::ifstream(path)) throw RecordingError(path + ": missing: " + absent);
+  const std::string text = textOfFile(path, [](const std::string& what) { throw RecordingError(what); });
   try {
-    root_ = YAML::Load(readableYaml(file));
+    root_ = YAML::Load(readableYaml(text));
   } catch (const YAML::Exception& e) {
     throw RecordingError(path + ":" + std::to_string(e.mark.line + 1) + ": not valid YAML: " + e.msg);
   }

@@ -56,6 +56,7 @@ class TextRows {
   template <class T>
   T parse(std::size_t index, const char* expected) const;
   [[noreturn]] void raise(const std::string& message) const;
+  bool readLine();
   void split();
 
   std::string path_;
