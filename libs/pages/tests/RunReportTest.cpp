@@ -48,6 +48,23 @@ struct GoodRun {
   }
 };
 
+/// What recordings say is shown, never run.
+TEST(RunReport, EscapesWhatRecordingsSay) {
+  const std::string hostile = "<script>alert('&')</script>";
+  GoodRun run;
+  run.record.input = "/data/" + hostile;
+  run.record.configuration = "a: " + hostile + "\n";
+  run.record.recording_warnings = {"topic " + hostile + ": image missing"};
+  run.record.truth_fault = hostile;
+  run.record.groundtruth.clear();
+  run.result.statistics.failures = {hostile};
+  run.result.statistics.resets = 1;
+  run.result.verdict = run.result.error = run.result.refinement.verdict = hostile;
+  const std::string page = runReport(run.record, run.result, run.series);
+  EXPECT_THAT(page, Not(HasSubstr("<script")));
+  EXPECT_THAT(page, HasSubstr("&lt;script&gt;alert("));
+}
+
 TEST(RunAdvice, AGoodRunNeedsNone) { EXPECT_THAT(GoodRun().advice(), IsEmpty()); }
 
 TEST(RunAdvice, SaysWhatToDoAboutEachFault) {

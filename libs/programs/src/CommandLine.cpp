@@ -62,7 +62,8 @@ Option CommandLine::flag(const std::string& names, bool& value, const std::strin
 }
 
 std::optional<int> CommandLine::parse(int argc, const char* const* argv, std::ostream& out, std::ostream& err) {
-  app_->set_version_flag("--version", app_->get_name() + " " + version(), "Print the version and exit");
+  app_->set_version_flag("--version", app_->get_name() + " " + version() + "\nbuilt with " + LINTEL_BUILT_WITH,
+                         "Print the version and exit");
   try {
     app_->parse(argc, argv);
   } catch (const CLI::ParseError& error) {

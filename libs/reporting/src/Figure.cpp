@@ -19,12 +19,13 @@ std::string number(double value) {
   return text;
 }
 
-/// A text between double quotes, as gnuplot reads it.
+/// A text between double quotes, as gnuplot reads it. What is between backquotes it would run as a command.
 std::string quoted(const std::string& text) {
   std::string result = "\"";
   for (const char c : text) {
     if (c == '"' || c == '\\') result += '\\';
-    result += c == '\n' ? ' ' : c;
+    const bool control = static_cast<unsigned char>(c) < 0x20;
+    result += control ? ' ' : c == '`' ? '\'' : c;
   }
   return result + "\"";
 }

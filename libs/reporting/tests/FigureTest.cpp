@@ -7,6 +7,7 @@
 #include <limits>
 
 #include "lintel/core/ChildProcess.h"
+#include "lintel/testing/TempFolder.h"
 
 namespace lintel {
 namespace {
@@ -34,6 +35,18 @@ Figure everyKind() {
   figure.curves = {line, band, segments, {"dots", {{1, 0}, {2, 0.5}}, CurveStyle::kDots}};
   figure.boxes = {{"boxes", {{1, 0.3, {0, 0.2, 0.4, 0.5, 0.9}}}}};
   return figure;
+}
+
+TEST_F(FigureDrawing, NamesAreNoCommands) {
+  const test::TempFolder folder;
+  const std::string file = folder / "made";
+  Figure figure = everyKind();
+  for (const std::string& name : {"`touch " + file + "`", "\"; system('touch " + file + "') #",
+                                  "\n!touch " + file + "\n", "\\\"; !touch " + file}) {
+    figure.title = figure.x_label = figure.curves[0].title = figure.boxes[0].title = name;
+    svgOf(figure);
+    EXPECT_EQ(folder.entries(), 0) << name;
+  }
 }
 
 TEST_F(FigureDrawing, EveryKindOfCurveIsDrawn) {

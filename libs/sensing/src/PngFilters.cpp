@@ -36,7 +36,7 @@ void paethRows(const std::uint8_t* rows, std::size_t width, const std::uint8_t* 
   Lanes value{}, up{};
   for (std::size_t t = 0; t + 1 < width + kLanes; ++t) {
     const Lanes corner = up, first{static_cast<std::int16_t>(t < width ? above[t] : 0)};
-    up = __builtin_shuffle(value, first, Lanes{8, 0, 1, 2, 3, 4, 5, 6});
+    up = __builtin_shufflevector(value, first, 8, 0, 1, 2, 3, 4, 5, 6);
     Bytes step;
     std::memcpy(&step, &steps[kLanes * t], kLanes);
     value = (__builtin_convertvector(step, Lanes) + paeth(value, up, corner)) & 255;
