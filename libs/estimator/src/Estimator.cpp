@@ -245,7 +245,10 @@ void Estimator::Impl::shrink(bool second_newest_is_keyframe, WindowUpdate& updat
 
 void Estimator::Impl::dropOldest(WindowUpdate& update) {
   const FrameId leaving = window_.frames.front().id;
-  marginaliseOldest(window_, params_);
+  EstimatorParams params = params_;
+  if (tracks_since_start_ <= kTrialFrames)
+    params.landmarks.lasting_points = 0;  // linearised where the start went wrong
+  marginaliseOldest(window_, params);
   retireTracks(window_, leaving, true, update);
   retireKeyframe(window_.frames.front(), update);
   window_.removeFrame(leaving, true);

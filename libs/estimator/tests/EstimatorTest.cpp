@@ -168,6 +168,20 @@ TEST(Estimator, PointsThatLastInThePriorMakeItBetter) {
   EXPECT_LT(std::exp(log_ratio), 0.9);
 }
 
+TEST(Estimator, NoPointLastsWhileTheStartIsOnTrial) {
+  const TrackedFlight flight = fly(ImuSimulatorParams{}, tracksFor(8, 0.4));
+  EstimatorParams none;
+  none.landmarks.lasting_points = 0;
+  const auto with = run(flight), without = run(flight, none);
+  std::size_t alike = 0, tracked = 0;
+  for (std::size_t k = 0; k < with.size() && with[k].T_w_b.p == without[k].T_w_b.p; ++k) {
+    ++alike;
+    tracked += with[k].hasPose();
+  }
+  EXPECT_GE(tracked, 30u);
+  EXPECT_LT(alike, with.size()) << "no point lasted at all";
+}
+
 TEST(Estimator, LinesDoNotMakeItWorse) {
   double log_ratio = 0;
   constexpr int kSeeds = 6;
