@@ -147,10 +147,10 @@ std::string TurnCheck::fault(Suspicion suspicion, double corrected_s) const {
   if (gyroIsSilent())
     return "the gyroscope shows no turn at all while the images turn: check that its values are recorded";
   if (here.missed < kNoiseMisses) return faultOf(here, R_b_c_, suspicion);
-  const TurnFit best = bestFit();
   const bool alone = suspicion == Suspicion::kNone;
-  const bool clocks = std::abs(best.offset_s) > kSearchedBefore_s && best.missed < kClearlyLess * here.missed &&
-                      (!alone || here.missed > kLargestMissed);
+  if (alone && here.missed <= kLargestMissed) return faultOf(here, R_b_c_, suspicion);
+  const TurnFit best = bestFit();
+  const bool clocks = std::abs(best.offset_s) > kSearchedBefore_s && best.missed < kClearlyLess * here.missed;
   if (!clocks && here.missed < (alone ? kUnrelatedMisses : kLargestMissed)) return faultOf(here, R_b_c_, suspicion);
   char text[300];
   if (!clocks || best.missed > kLargestMissed) {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "ClockSearch.h"
 
+#include <algorithm>
 #include <cmath>
 #include <vector>
 
@@ -9,7 +10,7 @@ namespace lintel {
 namespace {
 
 constexpr double kLongest_s = 5;
-constexpr double kFirstTry_s = 1.5, kTryEvery_s = 0.5;
+constexpr double kFirstTry_s = 1.5, kTryGrowth = 1.5;
 constexpr double kGoodSigma_s = 0.002;
 constexpr double kLeftToEstimator_s = 0.005;  // its model is linear in the offset
 constexpr double kSignificant = 4;            // standard deviations
@@ -30,7 +31,7 @@ ClockSearch searchClock(TrackingStage& tracking, const Rig& rig, const std::func
     search.frames.push_back(std::move(*frame));
     const double t_s = 1e-9 * static_cast<double>(tracks.back().t_ns - tracks.front().t_ns);
     if (t_s < next_try_s) continue;
-    next_try_s += kTryEvery_s;
+    next_try_s = std::min(kLongest_s, kTryGrowth * next_try_s);
     const ClockOffset clock = findClockOffset(tracks, imu, rig);
     if (clock.determined && (!search.clock.determined || clock.sigma_s < search.clock.sigma_s)) search.clock = clock;
     if (t_s >= kLongest_s || (search.clock.determined && search.clock.sigma_s < kGoodSigma_s)) break;

@@ -158,12 +158,12 @@ std::string RunCheck::verdict(const OdometryStatistics& s, const Rig& estimated)
   if (const std::string fault = turns_.fault(Suspicion::kNone, clock_offset_s_); !fault.empty())
     return images_.fault().empty() ? fault : images_.fault() + "; " + fault;
   if (const std::string fault = accelerometer_.sizeFault(); !fault.empty()) return fault;
-  const std::string likely = cause();
-  if (s.frames_with_pose == 0) return likely.empty() ? likely : "no pose was found (" + s.last_wait + "); " + likely;
-  const std::string fault = symptom(s, estimated);
+  const bool no_pose = s.frames_with_pose == 0;
+  const std::string fault = no_pose ? "no pose was found (" + s.last_wait + ")" : symptom(s, estimated);
   if (fault.empty()) return fault;
-  return fault + "; " +
-         (likely.empty() ? "check that IMU and images belong together, T_BS of both, and the calibration" : likely);
+  const std::string likely = cause();
+  if (!likely.empty()) return fault + "; " + likely;
+  return no_pose ? "" : fault + "; check that IMU and images belong together, T_BS of both, and the calibration";
 }
 
 }  // namespace lintel

@@ -15,7 +15,9 @@ namespace lintel {
 
 namespace {
 
-constexpr double kStep_s = 0.005;          // of the grid: much less than a turn takes
+constexpr int kSteps = 20;  // of the grid, to either side: 5 ms, much less than a turn takes
+constexpr double kStep_s = kLargestClockOffset_s / kSteps;
+constexpr int kCoarse = 4;                 // steps at first, 20 ms: a fifth of the period of a hand that shakes
 constexpr double kLeastCertain_s = 0.012;  // the range is sixteen times as wide
 constexpr double kLeastTurn_px = 0.3;      // a turn that moves points by less than tracks err shows no offset
 constexpr double kWidth_px = 2;            // of the robust loss
@@ -95,6 +97,22 @@ class Fit {
   Eigen::Vector3d bias_ = Eigen::Vector3d::Zero();
 };
 
+/// Evaluates the grid coarsely, then every step around the smallest cost; its place.
+int searchGrid(Fit& fit, std::map<int, EpipolarSystem>& grid) {
+  const auto evaluate = [&](int k) {
+    if (grid.count(k) == 0) grid[k] = fit.at(k * kStep_s);
+  };
+  const auto smallest = [&grid] {
+    return std::min_element(grid.begin(), grid.end(),
+                            [](const auto& x, const auto& y) { return x.second.cost < y.second.cost; })
+        ->first;
+  };
+  for (int k = -kSteps; k <= kSteps; k += kCoarse) evaluate(k);
+  const int coarse = smallest();
+  for (int k = std::max(-kSteps, coarse - kCoarse); k <= std::min(kSteps, coarse + kCoarse); ++k) evaluate(k);
+  return smallest();
+}
+
 }  // namespace
 
 ClockOffset findClockOffset(const std::vector<FrameTracks>& frames, const ImuBatch& imu, const Rig& rig) {
@@ -105,21 +123,19 @@ ClockOffset findClockOffset(const std::vector<FrameTracks>& frames, const ImuBat
   if (pairs.size() < kLeastPairs) return found;
   const double focal = rig.camera.meanFocal(), width_rad = kWidth_px / focal;
   Fit fit(pairs, path, width_rad);
-  const int steps = static_cast<int>(std::lround(kLargestClockOffset_s / kStep_s));
-  std::vector<EpipolarSystem> grid;
-  for (int k = -steps; k <= steps; ++k) grid.push_back(fit.at(k * kStep_s));
-  const auto best =
-      std::min_element(grid.begin(), grid.end(), [](const auto& x, const auto& y) { return x.cost < y.cost; });
-  const auto at = best - grid.begin();
-  found.rms_px = focal * std::sqrt(best->sum / best->weights);
-  if (at == 0 || best + 1 == grid.end()) return found;
-  const double before = (best - 1)->cost, after = (best + 1)->cost, curvature = before + after - 2 * best->cost;
+  std::map<int, EpipolarSystem> grid;  // by steps
+  const int best_at = searchGrid(fit, grid);
+  const EpipolarSystem& best = grid.at(best_at);
+  found.rms_px = focal * std::sqrt(best.sum / best.weights);
+  if (std::abs(best_at) == kSteps) return found;
+  const double before = grid.at(best_at - 1).cost, after = grid.at(best_at + 1).cost,
+               curvature = before + after - 2 * best.cost;
   if (!(curvature > 0)) return found;
-  found.offset_s = kStep_s * (static_cast<double>(at - steps) + 0.5 * (before - after) / curvature);
+  found.offset_s = kStep_s * (best_at + 0.5 * (before - after) / curvature);
   // cost / variance is a chi-square: its second derivative is twice the information. Points of one frame share errors
   // (rolling shutter, calibration): a pair counts as one observation, not every ray.
-  const double rays = best->weights / static_cast<double>(pairs.size());
-  const double variance = best->sum / best->weights * rays;
+  const double rays = best.weights / static_cast<double>(pairs.size());
+  const double variance = best.sum / best.weights * rays;
   found.sigma_s = kStep_s * std::sqrt(2 * variance / curvature);
   const EpipolarSystem there = fit.at(found.offset_s);
   found.bias_gyro = fit.bias();
