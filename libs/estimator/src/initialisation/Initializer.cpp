@@ -25,6 +25,10 @@ namespace lintel {
 namespace {
 
 constexpr double kKnownOffset_s = 0.002;
+// An adjustment is left when the scale is less certain than asked for by this factor, before it and after its first
+// round: what is left of it changes the scale's sigma by less.
+constexpr double kHopelessBefore = 3, kHopelessAfterFirst = 2;
+constexpr char kScaleUnknown[] = "waiting for a motion that shows the scale";
 
 /// Mean and standard deviation (norm over the axes) of the buffer's IMU.
 struct ImuStatistics {
@@ -164,8 +168,7 @@ std::string Initializer::tryMoving(const Eigen::Vector3d& bias_gyro, SlidingWind
     trial.frames[k].motion.segment<3>(kVelocityAt) = R_w_b0 * gravity.v_b0_bk[k];
   }
   levelAndCentre(trial);
-  adjust(trial);
-  return verify(trial);
+  return adjust(trial) ? verify(trial) : kScaleUnknown;
 }
 
 double Initializer::misfitOf(SlidingWindow& window) const {
@@ -189,7 +192,7 @@ double Initializer::misfitOf(SlidingWindow& window) const {
   return sum;
 }
 
-void Initializer::adjust(SlidingWindow& window) const {
+bool Initializer::adjust(SlidingWindow& window) const {
   setBiasPrior(window, MotionBlock::Zero(), params_.initializer.bias_gyro_sigma,
                std::numeric_limits<double>::infinity());
   CalibrationParams frozen = params_.calibration;
@@ -202,6 +205,7 @@ void Initializer::adjust(SlidingWindow& window) const {
   for (int round = 0; round < 3; ++round) {
     loose.point_max_error_px = round == 0 ? 30 * scale : round == 1 ? 8 * scale : params_.landmarks.point_max_error_px;
     triangulatePoints(window, loose, params_.factors.point_sigma_px);
+    if (round == 0 && !scaleWithin(kHopelessBefore, window)) return false;
     WindowFactors factors(window, params_.factors);
     factors.addPriors();
     factors.addImu();
@@ -214,7 +218,9 @@ void Initializer::adjust(SlidingWindow& window) const {
       if (track.triangulated && reprojectionError(window, track) > loose.point_max_error_px) track.triangulated = false;
     for (WindowFrame& frame : window.frames)
       if (frame.imu) frame.imu->repropagate(biasOf(frame.motion.data()));
+    if (round == 0 && !scaleWithin(kHopelessAfterFirst, window)) return false;
   }
+  return true;
 }
 
 std::string Initializer::verify(SlidingWindow& window) const {
@@ -231,8 +237,12 @@ std::string Initializer::verify(SlidingWindow& window) const {
   if (upperMedian(errors) > p.max_error_px) return "the images do not agree with the motion";
   if (biasOf(window.frames.back().motion.data()).accel.norm() > std::min(p.max_bias_accel, trialBiasAccel(p)))
     return "the accelerometer bias of the start is implausible";
-  if (!(relativeScaleSigma(window) < p.max_scale_sigma)) return "waiting for a motion that shows the scale";
+  if (!scaleWithin(1, window)) return kScaleUnknown;
   return {};
+}
+
+bool Initializer::scaleWithin(double times, SlidingWindow& window) const {
+  return relativeScaleSigma(window) < times * params_.initializer.max_scale_sigma;
 }
 
 double Initializer::relativeScaleSigma(SlidingWindow& window) const {

@@ -30,7 +30,9 @@ class Initializer {
   std::string startMoving(SlidingWindow& window) const;
   std::string tryMoving(const Eigen::Vector3d& bias_gyro, SlidingWindow& trial) const;
   double misfitOf(SlidingWindow& window) const;  ///< squared residuals, in sigmas, of points, IMU and priors
-  void adjust(SlidingWindow& window) const;
+  /// False when the scale turns out to be far from known; the adjustment is not finished then.
+  bool adjust(SlidingWindow& window) const;
+  bool scaleWithin(double times, SlidingWindow& window) const;  ///< times the sigma that is asked for
   std::string verify(SlidingWindow& window) const;
   double relativeScaleSigma(SlidingWindow& window) const;
   void setBiasPrior(SlidingWindow& window, const MotionBlock& mean, double gyro_sigma, double velocity_sigma) const;

@@ -55,19 +55,24 @@ WindowPrior priorOf(std::vector<BlockKey> keys, std::vector<PriorBlock> blocks, 
   return prior;
 }
 
-/// A point slides: x' = x + noise of this variance. x' takes the place of x in the equations.
-void slide(Eigen::MatrixXd& H, Eigen::VectorXd& b, Eigen::Index at, double variance) {
-  using Columns = Eigen::Matrix<double, Eigen::Dynamic, kPointTangent>;
-  const Eigen::Matrix3d W = Eigen::Matrix3d::Identity() / variance;
-  const Eigen::Matrix3d gain = (H.block<3, 3>(at, at) + W).inverse();
-  const Eigen::Vector3d b_x = b.segment<3>(at);
-  const Columns H_x = H.middleCols<3>(at), to_others = H_x * gain, crossed = to_others * W;
-  H -= to_others * H_x.transpose();
-  b -= to_others * b_x;
-  H.middleCols<3>(at) = crossed;
-  H.middleRows<3>(at) = crossed.transpose();
-  H.block<3, 3>(at, at) = W - W * gain * W;
-  b.segment<3>(at) = W * gain * b_x;
+/// Points slide: x' = x + noise of this variance, independent for each coordinate. x' takes the place of x in the
+/// equations. `rows`: of all points.
+void slide(Eigen::MatrixXd& H, Eigen::VectorXd& b, const std::vector<Eigen::Index>& rows, double variance) {
+  if (rows.empty()) return;
+  const double w = 1 / variance;
+  const Eigen::MatrixXd H_x = H(Eigen::all, rows);
+  Eigen::MatrixXd known = H_x(rows, Eigen::all);
+  known.diagonal().array() += w;
+  const Eigen::LLT<Eigen::MatrixXd> llt(known);
+  const Eigen::MatrixXd half = llt.matrixL().solve(H_x.transpose());  // half' half = H_x (H_xx + W)^-1 H_x'
+  const Eigen::MatrixXd crossed = w * llt.matrixU().solve(half).transpose();
+  const Eigen::VectorXd moved = llt.solve(Eigen::VectorXd(b(rows)));
+  H.selfadjointView<Eigen::Lower>().rankUpdate(half.transpose(), -1);
+  H.triangularView<Eigen::StrictlyUpper>() = H.transpose();
+  b -= H_x * moved;
+  H(Eigen::all, rows) = crossed;
+  H(rows, Eigen::all) = crossed.transpose();
+  b(rows) = w * moved;
 }
 
 GaugeAction actionOf(const BlockKey& key) {
@@ -113,11 +118,13 @@ std::optional<WindowPrior> marginalise(SlidingWindow& window, const std::vector<
   std::vector<PriorBlock> blocks;
   Eigen::MatrixXd H = eq.H.bottomRightCorner(size, size).selfadjointView<Eigen::Lower>();
   Eigen::VectorXd b = eq.b.tail(size);
+  std::vector<Eigen::Index> point_rows;
   for (std::size_t i = kept; i < eq.blocks.size(); ++i) {
     blocks.push_back(priorBlockOf(window, eq.blocks[i], absolute));
-    if (staying.walk_rad > 0 && eq.blocks[i].kind == BlockKey::kPoint)
-      slide(H, b, eq.offsets[i] - start, staying.walk_rad * staying.walk_rad);
+    if (eq.blocks[i].kind != BlockKey::kPoint) continue;
+    for (Eigen::Index row = eq.offsets[i]; row < eq.offsets[i + 1]; ++row) point_rows.push_back(row - start);
   }
+  if (staying.walk_rad > 0) slide(H, b, point_rows, staying.walk_rad * staying.walk_rad);
   return priorOf({eq.blocks.begin() + static_cast<std::ptrdiff_t>(kept), eq.blocks.end()}, std::move(blocks), H, b);
 }
 

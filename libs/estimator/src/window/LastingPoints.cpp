@@ -29,8 +29,14 @@ bool spansWindow(const SlidingWindow& window, const PointTrack& track) {
          4 * track.sightings.size() >= 3 * (window.frames.size() - 1);
 }
 
-/// Chi-square per degree of freedom of the points that the newest frame sees: two numbers a sighting, three for the
-/// point's place unless a prior knows it.
+/// Whether the prior may take a point in: one that it knows already if the newest frame sees it.
+bool mayLast(const SlidingWindow& window, const PointTrack& track, bool known) {
+  return known ? track.sightings.back().frame == window.frames.back().id
+               : isPlaced(track) && spansWindow(window, track);
+}
+
+/// Chi-square per degree of freedom of the points that may last: two numbers a sighting, three for the point's place
+/// unless a prior knows it.
 std::map<BlockKey, double> chiSquares(SlidingWindow& window, const std::vector<Factor>& measurements,
                                       const std::set<BlockKey>& known) {
   std::map<BlockKey, double> result;
@@ -38,8 +44,9 @@ std::map<BlockKey, double> chiSquares(SlidingWindow& window, const std::vector<F
     const BlockKey& key = factor.blocks.back();
     if (key.kind != BlockKey::kPoint || !isImageFactor(factor)) continue;
     const PointTrack& track = window.points.at(key.id);
-    if (track.sightings.back().frame != window.frames.back().id) continue;
-    const double freedom = 2.0 * static_cast<double>(track.sightings.size()) - (known.count(key) > 0 ? 0 : 3);
+    const bool in_prior = known.count(key) > 0;
+    if (!mayLast(window, track, in_prior)) continue;
+    const double freedom = 2.0 * static_cast<double>(track.sightings.size()) - (in_prior ? 0 : 3);
     result[key] += squaredResidual(window, factor) / freedom;
   }
   return result;
@@ -61,11 +68,10 @@ std::set<BlockKey> lastingPoints(SlidingWindow& window, const std::vector<Factor
   std::set<BlockKey> lasting;
   std::vector<std::pair<double, BlockKey>> ranked;
   for (const auto& [key, chi_square] : chiSquares(window, measurements, known)) {
-    const PointTrack& track = window.points.at(key.id);
     if (chi_square >= 1) continue;
     if (known.count(key) > 0)
       lasting.insert(key);
-    else if (isPlaced(track) && spansWindow(window, track))
+    else
       ranked.emplace_back(chi_square, key);
   }
   std::sort(ranked.begin(), ranked.end());
