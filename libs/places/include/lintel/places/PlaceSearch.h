@@ -1,0 +1,83 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <string>
+#include <unordered_map>
+#include <vector>
+
+#include "lintel/core/FrameTracks.h"
+#include "lintel/core/ParamRange.h"
+#include "lintel/geometry/Camera.h"
+#include "lintel/geometry/Pose.h"
+#include "lintel/places/PlaceView.h"
+
+namespace lintel {
+
+/// When two keyframes show the same place.
+struct PlaceParams {
+  bool enabled = true;
+  double min_separation_s = 10;  ///< between the two visits
+  int candidates = 4;            ///< earlier places that are tried for a keyframe
+  int max_bits = 64;             ///< of 256 in which descriptors of one point may differ
+  double max_error_px = 3;       ///< of a point of the earlier visit in the image of the later one
+  int min_points = 12;           ///< that agree with one pose
+  int min_cells = 5;             ///< of 16 of the image with such points
+  int min_support = 3;           ///< other keyframes of the later visit that find the same drift
+  double max_drift_m = 4;        ///< a larger one, and
+  double max_drift_share = 0.1;  ///< this share of the way between more, is not believed
+
+  template <class F>
+  void fields(F&& field) {
+    field("enabled", enabled);
+    field("min_separation_s", min_separation_s, Range{1, 1e6});
+    field("candidates", candidates, Range{1, 100});
+    field("max_bits", max_bits, Range{1, 256});
+    field("max_error_px", max_error_px, ReferencePixels{0.1, 100});
+    field("min_points", min_points, Range{6, 1000});
+    field("min_cells", min_cells, Range{1, 16});
+    field("min_support", min_support, Range{0, 100});
+    field("max_drift_m", max_drift_m, Range{0, 1e6});
+    field("max_drift_share", max_drift_share, Range{0, 10});
+  }
+};
+
+/// A keyframe as the odometry has it.
+struct PlaceKeyframe {
+  Pose T_w_c;
+  int run = 0;             ///< keyframes of different runs have different worlds
+  double travelled_m = 0;  ///< since the first keyframe
+  const PlaceView* view = nullptr;
+};
+
+/// A point of which there are two tracks, one from an earlier visit.
+struct SamePoint {
+  TrackId earlier = 0, later = 0;
+  int votes = 0;  ///< pairs of keyframes that say so
+};
+
+/// Two keyframes that show the same place, or seem to.
+struct PlacePair {
+  std::int64_t earlier_ns = 0, later_ns = 0;
+  int points = 0;        ///< that agree with one pose
+  int support = 0;       ///< other keyframes that find the same drift
+  Pose T_w_c;            ///< of the later one, in the world of the earlier
+  double drift_m = 0;    ///< how far the odometry has drifted between them
+  double drift_rad = 0;  ///< and turned
+  double apart_px = 0;   ///< how far the odometry expects its points from where they are seen, median
+  std::string refusal;   ///< why they are not taken as the same place; empty: they are
+};
+
+struct PlaceReport {
+  std::vector<PlacePair> pairs;  ///< ascending by the later time; accepted and refused
+  std::vector<SamePoint> same;   ///< ascending by tracks
+  std::size_t described = 0;     ///< keyframes
+};
+
+/// Finds places that were seen again, and points that were tracked there both times. Appearance proposes (WordIndex),
+/// the geometry of the points decides (Resection), keyframes that follow each other must find the same drift. Poses of
+/// the odometry are used for the vertical and for what a few seconds are known to, not for where the later visit was.
+/// `keyframes` ascending in time, with views; `points_w` positions of tracked points.
+PlaceReport findPlaces(const Camera& camera, const std::vector<PlaceKeyframe>& keyframes,
+                       const std::unordered_map<TrackId, Eigen::Vector3d>& points_w, const PlaceParams& params);
+
+}  // namespace lintel
