@@ -30,14 +30,24 @@ std::vector<WindowUpdate> run(const TrackedFlight& flight, const EstimatorParams
   return updates;
 }
 
-/// Root mean square position error of the causal trajectory after alignment of position and yaw [m].
-double positionError(const std::vector<WindowUpdate>& updates, const TrackedFlight& flight) {
+/// Where the body was, by the causal trajectory and truly, wherever there is a pose [m].
+struct Positions {
   std::vector<Eigen::Vector3d> estimate, truth;
+};
+
+Positions positionsOf(const std::vector<WindowUpdate>& updates, const TrackedFlight& flight) {
+  Positions p;
   for (std::size_t k = 0; k < flight.sim.frames.size(); ++k)
     if (updates[k].hasPose()) {
-      estimate.push_back(updates[k].T_w_b.p);
-      truth.push_back(flight.truth(k).state.T_w_b.p);
+      p.estimate.push_back(updates[k].T_w_b.p);
+      p.truth.push_back(flight.truth(k).state.T_w_b.p);
     }
+  return p;
+}
+
+/// Root mean square position error of the causal trajectory after alignment of position and yaw [m].
+double positionError(const std::vector<WindowUpdate>& updates, const TrackedFlight& flight) {
+  const auto [estimate, truth] = positionsOf(updates, flight);
   const Similarity T = alignPositions(AlignmentKind::kYaw, estimate, truth);
   double sum = 0;
   for (std::size_t i = 0; i < truth.size(); ++i) sum += (T * estimate[i] - truth[i]).squaredNorm();
@@ -202,12 +212,7 @@ TEST(Estimator, RetiredLandmarksAreWhereTheyAre) {
   const TrackedFlight flight = fly(perfectImu(), tracksFor(8, 0));
   const auto updates = run(flight, withoutCalibration());
   // the world of the estimate is the true one moved and turned about z
-  std::vector<Eigen::Vector3d> estimate, truth;
-  for (std::size_t k = 0; k < flight.sim.frames.size(); ++k)
-    if (updates[k].hasPose()) {
-      estimate.push_back(updates[k].T_w_b.p);
-      truth.push_back(flight.truth(k).state.T_w_b.p);
-    }
+  const auto [estimate, truth] = positionsOf(updates, flight);
   const Similarity T = alignPositions(AlignmentKind::kYaw, estimate, truth);
   int points = 0, lines = 0;
   for (const WindowUpdate& u : updates) {

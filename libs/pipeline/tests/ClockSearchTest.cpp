@@ -6,12 +6,11 @@
 #include <algorithm>
 #include <cmath>
 
+#include "MadeRecording.h"
 #include "lintel/geometry/Rotation.h"
 
 namespace lintel {
 namespace {
-
-constexpr std::int64_t kStep_ns = 50'000'000;
 
 /// Grey level of what is seen in a direction: blobs on a sphere, far away.
 double brightness(const Eigen::Vector3d& d) {
@@ -19,45 +18,31 @@ double brightness(const Eigen::Vector3d& d) {
          40 * std::sin(31 * d.y() + 7 * d.x()) * std::sin(27 * d.x() + 11 * d.z());
 }
 
+Rig turnedRig() {
+  Rig rig;
+  rig.camera = {200, 150, 160, 160, 99.5, 74.5, 0, 0, 0, 0};
+  rig.T_b_c.q = expRotation({0.3, -0.2, 1.5});
+  return rig;
+}
+
 /// A camera that turns among far blobs; an image with stamp t shows the world at t + offset of the IMU's clock.
-class TurningRecording : public Recording {
+class TurningRecording : public test::MadeRecording {
  public:
   explicit TurningRecording(double offset_s, double rate = 1, int frames = 100, std::string complaint = "")
-      : offset_s_(offset_s), rate_(rate), frames_(frames), complaint_(std::move(complaint)) {
-    rig_.camera = {200, 150, 160, 160, 99.5, 74.5, 0, 0, 0, 0};
-    rig_.T_b_c.q = expRotation({0.3, -0.2, 1.5});
-  }
-
-  const Rig& rig() const override { return rig_; }
-  std::optional<FrameWithImu> next() override {
-    if (delivered_ == frames_) {
-      if (!complaint_.empty()) throw RecordingError(complaint_);
-      return std::nullopt;
-    }
-    FrameWithImu step;
-    const std::int64_t t_ns = delivered_++ * kStep_ns;
-    step.frame = {t_ns, imageAt(1e-9 * static_cast<double>(t_ns) + offset_s_)};
-    for (int i = t_ns == 0 ? -100 : 0; i <= 10; ++i) {
-      const std::int64_t at_ns = t_ns - kStep_ns + i * kStep_ns / 10;
-      step.imu.push_back({at_ns, gyroAt(1e-9 * static_cast<double>(at_ns)), {0, 0, 9.81}});
-    }
-    return step;
-  }
-  std::size_t expectedFrames() const override { return static_cast<std::size_t>(frames_); }
-  std::vector<std::string> warnings() const override { return {}; }
+      : MadeRecording(turnedRig(), frames, std::move(complaint)), offset_s_(offset_s), rate_(rate) {}
 
  private:
   Eigen::Quaterniond R_w_b(double t_s) const {
     return expRotation(
         rate_ * Eigen::Vector3d(0.12 * std::sin(3.1 * t_s), 0.1 * std::sin(4.3 * t_s + 1), 0.15 * std::sin(2.3 * t_s)));
   }
-  Eigen::Vector3d gyroAt(double t_s) const {
+  Eigen::Vector3d gyroAt(double t_s) const override {
     constexpr double kHalf_s = 1e-3;
     return logRotation(R_w_b(t_s - kHalf_s).conjugate() * R_w_b(t_s + kHalf_s)) / (2 * kHalf_s);
   }
-  std::shared_ptr<const GrayImage> imageAt(double t_s) const {
-    const Eigen::Matrix3d R_w_c = (R_w_b(t_s) * rig_.T_b_c.q).toRotationMatrix();
-    const Camera& camera = rig_.camera;
+  std::shared_ptr<const GrayImage> imageAt(double t_s) const override {
+    const Eigen::Matrix3d R_w_c = (R_w_b(t_s + offset_s_) * rig().T_b_c.q).toRotationMatrix();
+    const Camera& camera = rig().camera;
     auto image = std::make_shared<GrayImage>(GrayImage{camera.width, camera.height, {}});
     for (int y = 0; y < camera.height; ++y)
       for (int x = 0; x < camera.width; ++x) {
@@ -68,9 +53,6 @@ class TurningRecording : public Recording {
   }
 
   double offset_s_, rate_;
-  int frames_, delivered_ = 0;
-  std::string complaint_;
-  Rig rig_;
 };
 
 FrontEndParams points() {

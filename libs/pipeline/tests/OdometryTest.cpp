@@ -6,40 +6,29 @@
 #include <stdexcept>
 #include <thread>
 
+#include "MadeRecording.h"
+
 namespace lintel {
 namespace {
 
-/// Black images at rest; after `frames` the recording ends or, with a complaint, breaks off.
-class BlackRecording : public Recording {
+Rig tinyRig() {
+  Rig rig;
+  rig.camera = {160, 120, 100, 100, 79.5, 59.5, 0, 0, 0, 0};
+  return rig;
+}
+
+/// Black images at rest.
+class BlackRecording : public test::MadeRecording {
  public:
-  explicit BlackRecording(int frames, std::string complaint = "") : frames_(frames), complaint_(std::move(complaint)) {
-    rig_.camera = {160, 120, 100, 100, 79.5, 59.5, 0, 0, 0, 0};
-    auto image = std::make_shared<GrayImage>();
-    *image = {160, 120, std::vector<std::uint8_t>(160 * 120, 0)};
-    image_ = image;
-  }
-  const Rig& rig() const override { return rig_; }
-  std::optional<FrameWithImu> next() override {
-    if (delivered_ == frames_) {
-      if (!complaint_.empty()) throw RecordingError(complaint_);
-      return std::nullopt;
-    }
-    FrameWithImu step;
-    step.frame = {delivered_ * kStep_ns, image_};
-    for (int i = delivered_ == 0 ? 10 : 0; i <= 10; ++i)
-      step.imu.push_back({(delivered_ - 1) * kStep_ns + i * kStep_ns / 10, {0, 0, 0}, {0, 0, 9.81}});
-    ++delivered_;
-    return step;
-  }
-  std::size_t expectedFrames() const override { return static_cast<std::size_t>(frames_); }
-  std::vector<std::string> warnings() const override { return {}; }
+  explicit BlackRecording(int frames, std::string complaint = "")
+      : MadeRecording(tinyRig(), frames, std::move(complaint)) {}
 
  private:
-  static constexpr std::int64_t kStep_ns = 50'000'000;
-  int frames_, delivered_ = 0;
-  std::string complaint_;
-  Rig rig_;
-  std::shared_ptr<const GrayImage> image_;
+  std::shared_ptr<const GrayImage> imageAt(double) const override { return image_; }
+  Eigen::Vector3d gyroAt(double) const override { return Eigen::Vector3d::Zero(); }
+
+  std::shared_ptr<const GrayImage> image_ =
+      std::make_shared<GrayImage>(GrayImage{160, 120, std::vector<std::uint8_t>(160 * 120, 0)});
 };
 
 class OdometryTest : public testing::TestWithParam<int> {  // threads
