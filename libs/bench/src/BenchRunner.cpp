@@ -32,7 +32,7 @@ class JobLock {
  private:
   static std::string made(const fs::path& path) {
     fs::create_directories(path.parent_path());
-    std::ofstream(path, std::ios::app);
+    const std::ofstream file(path, std::ios::app);
     return path.string();
   }
   FolderLock lock_;

@@ -90,13 +90,13 @@ class SuiteReader {
 
   template <class T>
   std::vector<T> asList(const YAML::Node& node) const {
-    const auto list = as<std::vector<T>>(node);
+    auto list = as<std::vector<T>>(node);
     if (list.empty()) fail(node, "an empty list");
     return list;
   }
 
   std::vector<double> startsIn(const YAML::Node& node) const {
-    const auto starts_s = asList<double>(node);
+    auto starts_s = asList<double>(node);
     for (const double start_s : starts_s)
       if (!(start_s >= 0 && start_s < 1e9)) fail(node, "starts_s must be seconds after the first frame");
     return starts_s;
@@ -108,14 +108,14 @@ class SuiteReader {
       const std::string key = as<std::string>(entry.first);
       if (known.count(key) > 0) continue;
       std::string list;
-      for (const std::string& k : known) list += " " + k;
+      for (const std::string& k : known) list.append(" ").append(k);
       fail(entry.first, "unknown key '" + key + "'; known here:" + list);
     }
   }
 
   /// A name that is also the name of a folder.
   std::string nameOf(const YAML::Node& node) const {
-    const std::string name = as<std::string>(node);
+    auto name = as<std::string>(node);
     if (name.empty() || name[0] == '.' || name[0] == '-' || name.find_first_of("/ \t\n") != std::string::npos)
       fail(node, "'" + name + "' is no name: without blanks and slashes, not beginning with a dot or a dash");
     return name;

@@ -85,7 +85,7 @@ class Estimator::Impl {
   FrameId next_frame_id_ = 0;
   ImuBatch pending_imu_;  // since the newest window frame
   std::int64_t newest_t_ns_ = 0;
-  int frames_without_points_ = 0, tracks_since_start_ = 0;
+  int blind_frames_ = 0, tracks_since_start_ = 0;
   Pose anchor_T_w_b_;  // where a new start continues
 };
 
@@ -177,7 +177,7 @@ void Estimator::Impl::initialise(WindowUpdate& update) {
   window_ = std::move(buffer);
   moveToAnchor();
   tracking_ = true;
-  frames_without_points_ = tracks_since_start_ = 0;
+  blind_frames_ = tracks_since_start_ = 0;
   unroll(window_, rig_.line_delay_s);
   solve(update);
   update.status = EstimatorStatus::kTracking;
@@ -196,20 +196,18 @@ void Estimator::Impl::track(WindowUpdate& update) {
   newest.at_rest = isAtRest(window_, params_);
   const bool keyframe = secondNewestIsKeyframe(window_, params_);
   solve(update);
-  frames_without_points_ =
-      pointsInNewest(window_) + linesInNewest(window_) < params_.failure.min_points && !window_.frames.back().at_rest
-          ? frames_without_points_ + 1
-          : 0;
+  newest.blind = pointsInNewest(window_) + linesInNewest(window_) < params_.failure.min_points && !newest.at_rest;
+  blind_frames_ = newest.blind ? blind_frames_ + 1 : 0;
   std::string failure = findFailure(window_, params_.failure, predicted);
   const bool on_trial = tracks_since_start_++ < kTrialFrames;
   if (failure.empty() && on_trial &&
       biasOf(window_.frames.back().motion.data()).accel.norm() > trialBiasAccel(params_.initializer))
     failure = "the start was wrong: it led to an implausible accelerometer bias";
-  if (failure.empty() && frames_without_points_ > params_.failure.max_blind_frames)
-    failure = "too few features are tracked";
+  if (failure.empty() && blind_frames_ > params_.failure.max_blind_frames) failure = "too few features are tracked";
   if (!failure.empty()) return fail(failure, update);
   update.keyframe = keyframe;
-  update.at_rest = window_.frames.back().at_rest;
+  update.at_rest = newest.at_rest;
+  update.blind = newest.blind;
   update.status = EstimatorStatus::kTracking;
   if (static_cast<int>(window_.frames.size()) > params_.keyframes) shrink(keyframe, update);
   fillPose(update);

@@ -336,26 +336,43 @@ TEST(Estimator, PureRotationGivesNoPoseRatherThanAWrongOne) {
   EXPECT_NE(updates[60].reason, "");
 }
 
+/// The flight with nothing to be seen in some frames.
+TrackedFlight darkened(TrackedFlight flight, std::size_t from, std::size_t frames) {
+  for (std::size_t k = from; k < from + frames; ++k) {
+    flight.sim.frames[k].tracks.points.clear();
+    flight.sim.frames[k].tracks.lines.clear();
+  }
+  return flight;
+}
+
 TEST(Estimator, BlindnessIsBridgedForAWhileAndThenAFailure) {
-  TrackedFlight flight = fly(ImuSimulatorParams{}, tracksFor(5.5, 0.3));
+  const TrackedFlight flight = fly(ImuSimulatorParams{}, tracksFor(5.5, 0.3));
   const std::size_t dark = 60;
-  const auto blindFor = [&](std::size_t frames) {
-    TrackedFlight f = flight;
-    for (std::size_t k = dark; k < dark + frames; ++k)
-      f.sim.frames[k].tracks.points.clear(), f.sim.frames[k].tracks.lines.clear();
-    return run(f);
-  };
-  const auto moment = blindFor(6);
+  EstimatorParams params;
+  params.failure.max_blind_frames = 20;
+  const auto moment = run(darkened(flight, dark, 6), params);
   EXPECT_EQ(lostOf(moment), 0);
   EXPECT_TRUE(moment[dark + 5].hasPose());
-  EstimatorParams params;
-  const auto longer = blindFor(static_cast<std::size_t>(2 * params.failure.max_blind_frames + 6));
+  const auto longer =
+      run(darkened(flight, dark, static_cast<std::size_t>(2 * params.failure.max_blind_frames + 6)), params);
   ASSERT_GE(lostOf(longer), 1);
   for (const WindowUpdate& u : longer)
     if (u.status == EstimatorStatus::kLost) {
       EXPECT_NE(u.reason, "");
       break;
     }
+}
+
+TEST(Estimator, FiveSecondsOfDarknessAreCarriedByTheImu) {
+  const TrackedFlight flight = fly(ImuSimulatorParams{}, tracksFor(14, 0.3));
+  const std::size_t dark = 120, light = dark + 100;
+  const auto updates = run(darkened(flight, dark, light - dark));
+  EXPECT_EQ(lostOf(updates), 0);
+  EXPECT_FALSE(updates[dark - 20].blind);
+  EXPECT_TRUE(updates[dark + 50].blind);
+  EXPECT_FALSE(updates.end()[-4].blind);
+  for (std::size_t k = dark; k < flight.sim.frames.size(); ++k) ASSERT_TRUE(updates[k].hasPose()) << k;
+  EXPECT_LT(positionError(updates, flight), 0.1) << "one frame before and after";
 }
 
 TEST(Estimator, FramesBetweenWindowFramesArePropagated) {

@@ -71,6 +71,21 @@ void measureChange(const MapMaterial& before, const MapMaterial& after, Refineme
   }
 }
 
+/// How far the IMU alone may have led the causal trajectory astray where it saw nothing.
+double blindDrift(const std::vector<RetiredKeyframe>& keyframes) {
+  constexpr double kUnknownAcceleration_m_s2 = 0.1;  // a bias of 0.05, and half a degree of tilt
+  double drift_m = 0, blind_s = 0;
+  for (const RetiredKeyframe& keyframe : keyframes) {
+    if (keyframe.blind && keyframe.imu) {
+      blind_s += keyframe.imu->dt_s();
+    } else {
+      drift_m += 0.5 * kUnknownAcceleration_m_s2 * blind_s * blind_s;
+      blind_s = 0;
+    }
+  }
+  return drift_m;
+}
+
 bool isFinite(const MapMaterial& material) {
   return material.rig.T_b_c.p.allFinite() && std::isfinite(material.rig.camera.fx) &&
          std::all_of(material.keyframes.begin(), material.keyframes.end(), [](const RetiredKeyframe& k) {
@@ -87,7 +102,7 @@ std::string text(const char* format, Args... args) {
 
 /// Why the result must not be used; empty when it may.
 std::string objection(const MapMaterial& after, const EstimatorParams& estimator, const RefinementParams& params,
-                      const RefinementReport& report, double travelled_m) {
+                      const RefinementReport& report, double may_move_m) {
   if (!isFinite(after)) return "the adjustment diverged";
   if (!(report.cost_after <= report.cost_before)) return "the adjustment did not lower its cost";
   if (report.held_out_after_px > 1.02 * report.held_out_before_px + 0.01)
@@ -95,8 +110,7 @@ std::string objection(const MapMaterial& after, const EstimatorParams& estimator
                 report.held_out_before_px);
   if (report.imu_after > std::max(params.max_imu_error, report.imu_before))
     return text("the IMU contradicts it (%.1f standard deviations)", report.imu_after);
-  if (report.moved_m > params.max_moved_m + params.max_moved_share * travelled_m)
-    return text("a keyframe moved by %.2f m", report.moved_m);
+  if (report.moved_m > may_move_m) return text("a keyframe moved by %.2f m", report.moved_m);
   if (report.turned_rad > params.max_turned_rad) return text("a keyframe turned by %.3f rad", report.turned_rad);
   for (const RetiredKeyframe& k : after.keyframes)
     if (k.bias.accel.norm() > estimator.failure.max_bias_accel || k.bias.gyro.norm() > estimator.failure.max_bias_gyro)
@@ -198,7 +212,8 @@ RefinementReport BatchRefinement::adjust(MapMaterial& material, const Refinement
   measureChange(before, material, report, travelled_m);
   report.held_out_before_px = heldOutError(map_, before, held_out, params_.min_views);
   report.held_out_after_px = heldOutError(map_, material, held_out, params_.min_views);
-  const std::string reason = objection(material, estimator_, params_, report, travelled_m);
+  const double may_move_m = params_.max_moved_m + params_.max_moved_share * travelled_m + blindDrift(before.keyframes);
+  const std::string reason = objection(material, estimator_, params_, report, may_move_m);
   report.accepted = reason.empty();
   if (!report.accepted) {
     report.verdict = "not refined: " + reason;

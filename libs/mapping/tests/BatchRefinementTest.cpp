@@ -220,6 +220,13 @@ TEST_F(BatchRefinementTest, AChangeThatIsTooLargeIsNotUsed) {
   EXPECT_NE(report.verdict.find("moved"), std::string::npos) << report.verdict;
 }
 
+TEST_F(BatchRefinementTest, WhereNothingWasSeenKeyframesMayMoveFarther) {
+  params_.max_moved_m = params_.max_moved_share = 0;
+  for (std::size_t k = 2; k + 2 < material_.keyframes.size(); ++k) material_.keyframes[k].blind = true;
+  const RefinementReport report = refine(material_);
+  EXPECT_TRUE(report.accepted) << report.verdict;
+}
+
 TEST_F(BatchRefinementTest, ProgressGoesFromNothingToAll) {
   std::vector<double> done;
   BatchRefinement(rig_, estimator_, {}, params_).refine(material_, [&](double d) {

@@ -28,6 +28,7 @@ class Adviser {
   std::vector<std::string> advice(const std::vector<std::string>& recording_warnings) {
     start();
     resets();
+    blindness();
     if (!result_.error.empty()) say("The recording ended early: " + result_.error + ".");
     points();
     lines();
@@ -59,6 +60,13 @@ class Adviser {
     say("The estimate was lost " + std::to_string(s_.resets) + " times and began anew (" + list +
         "): positions before and after do not share a frame. Look at these times in the recording: darkness, blur, a "
         "covered lens, or missing images are the usual reasons.");
+  }
+
+  void blindness() {
+    for (const Stretch& blind : s_.blind)
+      say("From " + fixedText(blind.from_s, 1) + " to " + fixedText(blind.to_s, 1) +
+          " s the images showed next to nothing that could be followed: the IMU alone carried the poses there, and the "
+          "error grows with the square of the time. Darkness and a covered lens are the usual reasons.");
   }
 
   void points() {

@@ -88,7 +88,19 @@ void EstimationStage::count(const WindowUpdate& update) {
     std::snprintf(text, sizeof text, "at %.2f s: ", t_s);
     s.failures.push_back(text + update.reason);
   }
-  if (update.status == EstimatorStatus::kTracking) countWindow(update);
+  if (update.status == EstimatorStatus::kTracking) {
+    countWindow(update);
+    countBlind(update.blind, t_s);
+  }
+}
+
+void EstimationStage::countBlind(bool blind, double t_s) {
+  constexpr double kShortest_s = 0.5;
+  std::vector<Stretch>& stretches = result_.statistics.blind;
+  if (blind && !was_blind_) stretches.push_back({t_s, t_s});
+  if (blind) stretches.back().to_s = t_s;
+  if (!blind && was_blind_ && stretches.back().to_s - stretches.back().from_s < kShortest_s) stretches.pop_back();
+  was_blind_ = blind;
 }
 
 /// Adds up what finish() divides by the number of windows.

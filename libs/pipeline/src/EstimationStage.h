@@ -22,6 +22,7 @@ class EstimationStage {
   void finishMap(const RefinementProgress& progress);
   void count(const WindowUpdate& update);
   void countWindow(const WindowUpdate& update);
+  void countBlind(bool blind, double t_s);
 
   Rig rig_;
   const Configuration& configuration_;
@@ -29,6 +30,7 @@ class EstimationStage {
   MapBuilder map_;
   const BatchRefinement refinement_;
   OdometryResult& result_;
+  bool was_blind_ = false;
 };
 
 }  // namespace lintel

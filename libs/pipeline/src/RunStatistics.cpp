@@ -54,6 +54,12 @@ Json trackingJson(const FrontEndStatistics& f) {
             {"median_length", f.lines.lifetimes.median()}}}};
 }
 
+Json blindJson(const OdometryStatistics& s) {
+  Json stretches = Json::array();
+  for (const Stretch& blind : s.blind) stretches.push_back({blind.from_s, blind.to_s});
+  return stretches;
+}
+
 Json refinementJson(const OdometryResult& result) {
   const RefinementReport& r = result.refinement;
   return {{"accepted", r.accepted},
@@ -117,6 +123,7 @@ std::string statisticsJson(const OdometryResult& result, const Rig& given, const
                   {"first_pose_s", s.first_pose_s},
                   {"resets", s.resets},
                   {"reset_reasons", s.failures},
+                  {"blind_s", blindJson(s)},
                   {"mean_points_used", s.mean_points_used},
                   {"mean_lines_tracked", s.mean_lines_tracked},
                   {"mean_lines_placed", s.mean_lines_placed},

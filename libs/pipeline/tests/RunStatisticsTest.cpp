@@ -19,6 +19,7 @@ TEST(StatisticsJson, SaysWhatTheRunCounted) {
   result.time_offset_s = 0.002;
   result.error = "cut off";
   result.lines_beside = 2;
+  result.statistics.blind = {{3.5, 6}};
   for (int i = 0; i < 3; ++i) StageClock::Scope scope(result.statistics.tracking);
   result.statistics.mean_lines_direction_unknown = 7.5;
   result.window_calibration.camera.fx = 458.4;
@@ -34,6 +35,8 @@ TEST(StatisticsJson, SaysWhatTheRunCounted) {
   EXPECT_EQ(json["frames_with_pose"], 30);
   EXPECT_EQ(json["resets"], 1);
   EXPECT_EQ(json["reset_reasons"][0], "at 1.50 s: the IMU has a gap");
+  EXPECT_EQ(json["blind_s"][0][0], 3.5);
+  EXPECT_EQ(json["blind_s"][0][1], 6);
   EXPECT_EQ(json["map_lines"], 3);
   EXPECT_EQ(json["map_lines_beside"], 2);
   EXPECT_EQ(json["calibration"]["intrinsics_px"][0], 458.5);

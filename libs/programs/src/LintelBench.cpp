@@ -45,6 +45,7 @@ class JobPool {
       }
     };
     std::vector<std::thread> threads;
+    threads.reserve(static_cast<std::size_t>(workers));
     for (int i = 0; i < workers; ++i) threads.emplace_back(worker);
     for (std::thread& thread : threads) thread.join();
     if (failure_) std::rethrow_exception(failure_);

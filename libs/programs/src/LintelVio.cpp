@@ -260,6 +260,9 @@ class LintelVio {
     if (s.first_pose_s > 0) out_ << ", first pose after " << s.first_pose_s << " s";
     out_ << "\n";
     for (const std::string& failure : s.failures) out_ << "started anew " << failure << "\n";
+    for (const Stretch& blind : s.blind)
+      out_ << "nothing to be seen from " << blind.from_s << " to " << blind.to_s
+           << " s: the IMU alone carried the poses there\n";
     out_ << "map: " << result.map.lines.size() << " lines, " << result.map.points.size() << " points, "
          << result.map.keyframes.size() << " keyframes\n";
     if (result.lines_beside > 0)

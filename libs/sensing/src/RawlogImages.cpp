@@ -41,7 +41,7 @@ std::string findImagesFolder(const std::string& rawlog_path, const std::string& 
   if (fs::exists(own / image_name, ignored)) return own.string();
   for (const fs::path& other : others)
     if (fs::exists(other / image_name, ignored)) return other.string();
-  const std::string neighbour = findNeighbour(parent.empty() ? "." : parent, image_name);
+  std::string neighbour = findNeighbour(parent.empty() ? "." : parent, image_name);
   if (neighbour.empty()) {
     if (fs::is_directory(own, ignored)) return own.string();  // a single image may be missing
     throw RecordingError(rawlog_path + ": its external images are missing: put or link their folder at " +

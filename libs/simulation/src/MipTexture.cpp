@@ -19,7 +19,8 @@ MipTexture::MipTexture(std::vector<std::uint8_t> values, int side, double tile_m
     coarse.values.reserve(static_cast<std::size_t>(coarse.side) * coarse.side);
     for (int y = 0; y < coarse.side; ++y) {
       for (int x = 0; x < coarse.side; ++x) {
-        const std::uint8_t* p = &fine.values[static_cast<std::size_t>(2 * y) * fine.side + 2 * x];
+        const std::uint8_t* p =
+            &fine.values[static_cast<std::size_t>(2 * y) * fine.side + 2 * static_cast<std::size_t>(x)];
         coarse.values.push_back(static_cast<std::uint8_t>((p[0] + p[1] + p[fine.side] + p[fine.side + 1] + 2) / 4));
       }
     }
@@ -35,7 +36,10 @@ float MipTexture::bilinear(const Level& level, float u, float v) const {
             y1 = (y0 + 1) & mask;
   const std::uint8_t* row0 = &level.values[static_cast<std::size_t>(y0) * level.side];
   const std::uint8_t* row1 = &level.values[static_cast<std::size_t>(y1) * level.side];
-  const float top = row0[x0] + ax * (row0[x1] - row0[x0]), bottom = row1[x0] + ax * (row1[x1] - row1[x0]);
+  const auto between = [&](const std::uint8_t* row) {
+    return static_cast<float>(row[x0]) + ax * static_cast<float>(row[x1] - row[x0]);
+  };
+  const float top = between(row0), bottom = between(row1);
   return (top + ay * (bottom - top)) * (1.0f / 128);
 }
 

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <algorithm>
+#include <cmath>
 #include <cstddef>
 #include <vector>
 
@@ -34,7 +35,7 @@ T lowerQuantile(std::vector<T>& values, double q) {
 /// r = q (n - 1), rounded to the nearest.
 template <class T>
 T nearestQuantile(std::vector<T>& values, double q) {
-  return valueOfRank(values, static_cast<std::size_t>(q * static_cast<double>(values.size() - 1) + 0.5));
+  return valueOfRank(values, static_cast<std::size_t>(std::lround(q * static_cast<double>(values.size() - 1))));
 }
 
 /// r = floor(n / 2): the middle value, the upper one of two.

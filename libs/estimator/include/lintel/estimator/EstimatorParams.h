@@ -148,7 +148,7 @@ struct InitializerParams {
 /// What counts as lost.
 struct FailureParams {
   int min_points = 4;  ///< points and lines tracked into the newest frame; with fewer it counts as without images
-  int max_blind_frames = 20;    ///< window frames in a row that the IMU may bridge
+  int max_blind_frames = 100;   ///< window frames in a row that the IMU may bridge: ten seconds
   double max_bias_accel = 2.5;  ///< [m/s^2] [Qin2018]
   double max_bias_gyro = 1.0;   ///< [rad/s] [Qin2018]
   double max_step_m = 2.0;      ///< difference between the predicted and the estimated position of a frame

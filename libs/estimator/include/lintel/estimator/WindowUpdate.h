@@ -20,7 +20,7 @@ struct RetiredKeyframe {
   Eigen::Vector3d v_w_b = Eigen::Vector3d::Zero();
   ImuBias bias;
   std::shared_ptr<const Preintegration> imu;  ///< from the keyframe before; null for the first of a run
-  bool at_rest = false;
+  bool at_rest = false, blind = false;
 };
 
 /// A point that is not tracked any more.
@@ -67,6 +67,7 @@ struct WindowUpdate {
   int points_used = 0, lines_tracked = 0, lines_placed = 0, lines_used = 0, lines_degenerate = 0, iterations = 0;
   int lines_through_epipole = 0, lines_direction_unknown = 0, lines_distance_unknown = 0, lines_constrained = 0;
   bool keyframe = false, at_rest = false;
+  bool blind = false;  ///< the images show too little: the pose is the IMU's alone
 
   bool hasPose() const { return status == EstimatorStatus::kTracking || status == EstimatorStatus::kPropagated; }
 };

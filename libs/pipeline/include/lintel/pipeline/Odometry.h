@@ -22,6 +22,11 @@ struct OdometryPose {
   Pose T_w_b;
 };
 
+/// A stretch of a recording, in seconds after its first frame.
+struct Stretch {
+  double from_s = 0, to_s = 0;
+};
+
 /// What a run counted.
 struct OdometryStatistics {
   std::size_t frames = 0, frames_with_pose = 0, window_frames = 0, keyframes = 0, resets = 0;
@@ -32,6 +37,7 @@ struct OdometryStatistics {
   /// degenerate lines by their reason (LineVerdict)
   double mean_lines_through_epipole = 0, mean_lines_direction_unknown = 0, mean_lines_distance_unknown = 0;
   std::vector<std::string> failures;                   ///< time and reason of each reset
+  std::vector<Stretch> blind;                          ///< images showed too little: poses are the IMU's alone
   std::string last_wait;                               ///< what initialisation waited for last
   StageClock decoding, tracking, estimation, mapping;  ///< a value a frame
   StageClock map_fitting, refinement;                  ///< once, after the last frame
