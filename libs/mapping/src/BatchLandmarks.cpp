@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // BatchProblem: the residuals of points, lines and groups.
 #include <algorithm>
+#include <cmath>
 
 #include "BatchProblem.h"
 #include "CarriedView.h"
@@ -10,6 +11,8 @@
 namespace lintel {
 
 namespace {
+
+constexpr std::size_t kJoinedViews = 12;
 
 /// Holds the length of a homogeneous point, which is not observable. Instead of a manifold: all landmarks then have
 /// tangents of four and residuals of two, for which Ceres has code of fixed size (and hence the second, empty
@@ -82,6 +85,12 @@ void BatchProblem::addView(ImageFactor<Target>& factor, ceres::LossFunction& los
                              landmark, at(poseAt(b)));
 }
 
+/// A joined point needs few views beside those of its visits: each couples keyframes that are far apart in time.
+std::size_t BatchProblem::mostViewsOf(const PointRecord& point) const {
+  const bool joined = point.extra_sigma_px > 0;
+  return joined && (most_views_ < 2 || most_views_ > kJoinedViews) ? kJoinedViews : most_views_;
+}
+
 void BatchProblem::addPoints() {
   own_factors_.push_back(std::make_unique<UnitLength>());
   ceres::CostFunction* unit_length = own_factors_.back().get();
@@ -89,11 +98,11 @@ void BatchProblem::addPoints() {
     const PointRecord& point = material_.points[points_[i]];
     const Eigen::Vector3d origin_w = originOf(point.views.front().keyframe);
     problem_->AddResidualBlock(unit_length, nullptr, at(points_at_ + i * kPointSize));
-    for (const PointView* view : spreadViews(point.views, most_views_)) {
+    for (const PointView* view : spreadViews(point.views, mostViewsOf(point))) {
       const PointView& v = *view;
       const auto k = static_cast<std::size_t>(keyframe_places_[v.keyframe]);
       point_factors_.emplace_back(v.px, calibrated_.camera, motionOf(material_.keyframes[k]), origin_w,
-                                  estimator_.factors.point_sigma_px);
+                                  std::hypot(estimator_.factors.point_sigma_px, point.extra_sigma_px));
       addView(point_factors_.back(), point_loss_, k, at(points_at_ + i * kPointSize));
     }
   }

@@ -60,6 +60,7 @@ class BatchProblem {
   void placeBlocks();
   void addPriors();
   void addImu();
+  std::size_t mostViewsOf(const PointRecord& point) const;
   void addPoints();
   void addLines();
   void addGroups();

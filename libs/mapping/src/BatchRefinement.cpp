@@ -125,7 +125,7 @@ BatchRefinement::BatchRefinement(const Rig& calibrated, const EstimatorParams& e
     : calibrated_(calibrated),
       estimator_(paramsFor(calibrated.camera, estimator)),
       map_(scaledTo(calibrated.camera, map)),
-      params_(params) {
+      params_(scaledTo(calibrated.camera, params)) {
   checkRanges(estimator, "estimator.");
   checkRanges(map, "map.");
   checkRanges(params, "refinement.");
@@ -133,13 +133,19 @@ BatchRefinement::BatchRefinement(const Rig& calibrated, const EstimatorParams& e
   estimator_.factors.line_sigma_px *= params.sigma_scale;
 }
 
-RefinementReport BatchRefinement::refine(MapMaterial& material, const RefinementProgress& progress) const {
+RefinementReport BatchRefinement::refine(MapMaterial& material, const RefinementProgress& progress,
+                                         const std::vector<PointJoin>& joins) const {
   RefinementReport report;
   MapMaterial refined = material;
   if (material.keyframes.size() < 3) {
     report.verdict = "not refined: fewer than three keyframes";
   } else {
-    report = adjust(refined, progress);
+    report = adjust(refined, progress, joins);
+    if (!report.accepted && !report.cancelled && !joins.empty()) {
+      refined = material;
+      report = adjust(refined, progress, {});
+      report.joins_refused = true;
+    }
   }
   if (report.accepted) {
     refined.trajectory = refinedTrajectory(material, refined.keyframes);
@@ -151,7 +157,8 @@ RefinementReport BatchRefinement::refine(MapMaterial& material, const Refinement
   return report;
 }
 
-RefinementReport BatchRefinement::adjust(MapMaterial& material, const RefinementProgress& progress) const {
+RefinementReport BatchRefinement::adjust(MapMaterial& material, const RefinementProgress& progress,
+                                         const std::vector<PointJoin>& joins) const {
   RefinementReport report;
   const MapMaterial before = material;
   std::vector<PointRecord> held_out;
@@ -161,11 +168,10 @@ RefinementReport BatchRefinement::adjust(MapMaterial& material, const Refinement
                                        [&](const PointRecord& p) { return isHeldOut(p, params_.held_out_share); }),
                         material.points.end());
 
-  bool cancelled = false;
   const auto goOn = [&](int round, int iteration) {
     const double done = round + std::min(1.0, static_cast<double>(iteration) / params_.max_iterations);
-    if (progress && !progress(done / params_.rounds) && done < params_.rounds) cancelled = true;
-    return !cancelled;
+    if (progress && !progress(done / params_.rounds) && done < params_.rounds) report.cancelled = true;
+    return !report.cancelled;
   };
   report.verdict = "not refined: the run was cancelled";
   for (int round = 0; round < params_.rounds; ++round) {
@@ -176,6 +182,11 @@ RefinementReport BatchRefinement::adjust(MapMaterial& material, const Refinement
     // Passes that come closer now can be told apart better in the next round; the last one must be right.
     const bool last = round + 1 == params_.rounds;
     if (round > 0) report.merged += fitting.merge(last ? 0 : map_.merge.max_drift_px);
+    const std::size_t separate = material.points.size();
+    const double relative = round / std::max(1.0, params_.rounds - 1.0);
+    report.joined =
+        fitting.join(joins, params_.join_first_px * std::pow(params_.join_last_px / params_.join_first_px, relative),
+                     params_.join_sigma_px);
     std::vector<bool> use_point, use_line;
     for (const PointRecord& p : material.points) use_point.push_back(p.known && inliersOf(p) >= params_.min_views);
     for (const LineRecord& l : material.lines)
@@ -192,7 +203,7 @@ RefinementReport BatchRefinement::adjust(MapMaterial& material, const Refinement
     // landmarks are chosen and classified anew after every round but the last: those need not converge
     const auto summary = problem.solve(params_.max_iterations, last ? 2e-3 : 1e-2,
                                        [&](int iteration) { return goOn(round, iteration); });
-    if (cancelled) return report;
+    if (report.cancelled) return report;
     if (!summary.usable) {
       report.verdict = "not refined: the adjustment found no solution";
       return report;
@@ -206,6 +217,7 @@ RefinementReport BatchRefinement::adjust(MapMaterial& material, const Refinement
     report.points = static_cast<std::size_t>(std::count(use_point.begin(), use_point.end(), true));
     report.lines = static_cast<std::size_t>(std::count(use_line.begin(), use_line.end(), true));
     problem.writeBack();
+    material.points.resize(separate);
     ++report.rounds;
   }
   double travelled_m = 0;

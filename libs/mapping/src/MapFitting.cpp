@@ -5,6 +5,7 @@
 #include "LineMerging.h"
 #include "LineSplitting.h"
 #include "LineTying.h"
+#include "PointJoining.h"
 #include "PointMerging.h"
 #include "lintel/mapping/MapBuilder.h"
 
@@ -28,6 +29,10 @@ int MapFitting::merge(double drift_px) {
   if (params_.merge.points) merged += mergePoints(cameras_, point_, params_.merge, material_.points);
   if (params_.merge.lines) merged += mergeLines(cameras_, line_, params_.merge, drift_px, material_.lines);
   return merged;
+}
+
+int MapFitting::join(const std::vector<PointJoin>& joins, double most_px, double sigma_px) {
+  return joinPoints(cameras_, point_, joins, most_px, sigma_px, material_.points);
 }
 
 void MapFitting::tie() {

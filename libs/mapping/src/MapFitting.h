@@ -4,6 +4,7 @@
 #include "LineFitting.h"
 #include "PointFitting.h"
 #include "lintel/mapping/MapParams.h"
+#include "lintel/mapping/PointJoin.h"
 
 namespace lintel {
 
@@ -17,6 +18,9 @@ class MapFitting {
 
   /// Joins estimates of the same landmark; returns how many were joined to others. `drift_px`: see mergeLines.
   int merge(double drift_px = 0);
+
+  /// See joinPoints().
+  int join(const std::vector<PointJoin>& joins, double most_px, double sigma_px);
 
   /// Ties degenerate lines to groups of parallel lines whose directions are known.
   void tie();

@@ -54,6 +54,8 @@ int mergePoints(const KeyframeCameras& cameras, const PointFitParams& fit, const
     PointRecord joint = points[a];
     joint.id = std::min(points[a].id, points[b].id);
     joint.views = mergedViews(points[a].views, points[b].views);
+    joint.joined.push_back(std::max(points[a].id, points[b].id));
+    joint.joined.insert(joint.joined.end(), points[b].joined.begin(), points[b].joined.end());
     const double separate = std::max(points[a].error_px, points[b].error_px);
     if (!fitPoint(cameras, fit, joint) || joint.error_px > std::min(params.point_max_error_px, 1.3 * separate + 0.3) ||
         std::any_of(joint.views.begin(), joint.views.end(), [](const PointView& v) { return !v.inlier; }))

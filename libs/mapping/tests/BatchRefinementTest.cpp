@@ -87,13 +87,37 @@ class BatchRefinementTest : public testing::Test {
       sum += (T * material.trajectory[i].second.p - flight_.frames[i].truth.state.T_w_b.p).squaredNorm();
     return std::sqrt(sum / static_cast<double>(material.trajectory.size()));
   }
-  RefinementReport refine(MapMaterial& material) const {
-    return BatchRefinement(rig_, estimator_, {}, params_).refine(material);
+  RefinementReport refine(MapMaterial& material, const std::vector<PointJoin>& joins = {}) const {
+    return BatchRefinement(rig_, estimator_, map_, params_).refine(material, {}, joins);
+  }
+  /// In the middle of the flight it is dark for a second: points are other tracks afterwards; the joins say which.
+  std::vector<PointJoin> splitTracks() {
+    constexpr TrackId kAfter = 1'000'000;
+    const FrameId dark = flight_.frames.size() / 2 - 10, light = dark + 20;
+    std::vector<PointJoin> joins;
+    std::vector<PointRecord> split;
+    for (const PointRecord& point : material_.points) {
+      PointRecord before = point, after = point;
+      after.id += kAfter;
+      before.views.clear();
+      after.views.clear();
+      for (const PointView& view : point.views) {
+        if (view.keyframe < dark) before.views.push_back(view);
+        if (view.keyframe >= light) after.views.push_back(view);
+      }
+      if (before.views.size() > 3 && after.views.size() > 3) joins.push_back({before.id, after.id, 1});
+      if (before.views.size() > 1) split.push_back(before);
+      if (after.views.size() > 1) split.push_back(after);
+    }
+    std::sort(split.begin(), split.end(), [](const PointRecord& a, const PointRecord& b) { return a.id < b.id; });
+    material_.points = split;
+    return joins;
   }
 
   static SimulatedTracks flight_;
   const Rig rig_ = eurocRig();
   EstimatorParams estimator_;
+  MapParams map_;
   RefinementParams params_;
   MapMaterial material_;
 };
@@ -161,6 +185,44 @@ TEST_F(BatchRefinementTest, LinesOfAGroupShareTheirDirection) {
   ASSERT_GE(members, 5);
   EXPECT_GE(with.residuals, without.residuals + 2 * 5) << "two residuals each";
   EXPECT_LT(error(material_), 1.05 * error(free));
+}
+
+TEST_F(BatchRefinementTest, PointsSeenAgainTieTheirVisitsTogether) {
+  const std::vector<PointJoin> joins = splitTracks();
+  ASSERT_GT(joins.size(), 15u);
+  MapMaterial apart = material_;
+  params_.lines = false;
+  map_.merge.point_max_error_px = 0.01;  // nothing else joins them
+  ASSERT_TRUE(refine(apart).accepted);
+  const RefinementReport report = refine(material_, joins);
+  EXPECT_TRUE(report.accepted) << report.verdict;
+  EXPECT_FALSE(report.joins_refused);
+  EXPECT_GT(report.joined, 15);
+  EXPECT_LT(error(material_), 0.9 * error(apart));
+}
+
+/// As a false loop would say: points after the middle are those 0.4 m beside them before it.
+TEST_F(BatchRefinementTest, AFalseLoopBendsNothing) {
+  std::vector<PointJoin> joins = splitTracks();
+  MapMaterial apart = material_;
+  ASSERT_TRUE(refine(apart).accepted);
+  std::map<TrackId, Eigen::Vector3d> p_w;
+  for (const PointRecord& point : apart.points)
+    if (point.known) p_w[point.id] = point.p_w;
+  const std::vector<PointJoin> right = joins;
+  for (PointJoin& join : joins) {
+    if (p_w.count(join.b) == 0) continue;
+    const Eigen::Vector3d beside = p_w[join.b] + Eigen::Vector3d(0.4, 0, 0);
+    const auto nearer = [&](const PointJoin& x, const PointJoin& y) {
+      const auto distance = [&](TrackId id) { return p_w.count(id) > 0 ? (p_w[id] - beside).norm() : 1e9; };
+      return distance(x.a) < distance(y.a);
+    };
+    join.a = std::min_element(right.begin(), right.end(), nearer)->a;
+    join.votes = 5;
+  }
+  const RefinementReport report = refine(material_, joins);
+  EXPECT_TRUE(report.accepted) << report.verdict;
+  EXPECT_LT(error(material_), 1.05 * error(apart) + 1e-4);
 }
 
 /// Landmarks with wrong sightings raise the cost of single steps, and the scale is weakly observed: the adjustment must

@@ -8,6 +8,7 @@
 #include <optional>
 #include <sstream>
 
+#include "LoopSection.h"
 #include "RunAdvice.h"
 #include "RunTables.h"
 #include "lintel/core/Version.h"
@@ -85,6 +86,7 @@ class Report {
   std::string text() {
     summary();
     trajectory();
+    loopSection(page_, result_);
     map();
     tracking();
     biases();

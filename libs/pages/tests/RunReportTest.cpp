@@ -97,6 +97,34 @@ TEST(RunReport, ShowsErrorsOnlyWithGroundTruth) {
   EXPECT_THAT(page, HasSubstr("<h1>Run on hall</h1>"));
 }
 
+TEST(RunReport, ShowsPlacesSeenAgainAndWhyOthersWereRefused) {
+  GoodRun run;
+  EXPECT_THAT(runReport(run.record, run.result, run.series), Not(HasSubstr("Places seen again"))) << "not looked for";
+  LoopResult& loops = run.result.loops;
+  loops.searched = true;
+  EXPECT_THAT(runReport(run.record, run.result, run.series), HasSubstr("0 pairs of 0 images"));
+  const auto at = [&](int i) { return run.result.trajectory[static_cast<std::size_t>(i)].t_ns; };
+  PlacePair pair;
+  pair.points = 33;
+  for (const int i : {150, 154, 190}) {  // two visits
+    pair.earlier_ns = at(i - 150), pair.later_ns = at(i);
+    pair.drift_m = 0.25;
+    loops.places.pairs.push_back(pair);
+    loops.drift_before_m.push_back(0.25);
+    loops.drift_after_m.push_back(0.0125);
+  }
+  loops.places.pairs.back().earlier_ns = at(120);
+  pair.refusal = "its points cover little of the image";
+  loops.places.pairs.push_back(pair);
+  const std::string page = runReport(run.record, run.result, run.series);
+  EXPECT_THAT(page, HasSubstr("3 pairs of"));
+  EXPECT_THAT(page, HasSubstr("7.5 to 7.7"));
+  EXPECT_THAT(page, HasSubstr("6.0 to 6.0"));
+  EXPECT_THAT(page, HasSubstr("0.250"));
+  EXPECT_THAT(page, HasSubstr("0.013"));
+  EXPECT_THAT(page, HasSubstr("1: its points cover little of the image"));
+}
+
 TEST(RunReport, ShowsOptionsThatDiffer) {
   GoodRun run;
   run.record.configuration = "a: 1\nb:\n  c: 3\n";

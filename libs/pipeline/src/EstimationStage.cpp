@@ -12,6 +12,7 @@ EstimationStage::EstimationStage(const Rig& rig, const Configuration& configurat
       configuration_(configuration),
       estimator_(rig, configuration.estimator),
       map_(rig, configuration.map),
+      loops_(rig, configuration.loops),
       refinement_(rig, configuration.estimator, configuration.map, configuration.refinement),
       result_(result) {}
 
@@ -27,11 +28,15 @@ WindowUpdate EstimationStage::process(const TrackedFrame& frame) {
     const StageClock::Scope scope(s.mapping);
     map_.add(update);
   }
+  if (configuration_.refinement.enabled) {
+    const StageClock::Scope scope(s.loops);
+    loops_.add(frame.step.frame, frame.tracks.points, update);
+  }
   if (update.hasPose()) result_.trajectory.push_back({update.t_ns, update.T_w_b});
   return update;
 }
 
-void EstimationStage::finish(const RefinementProgress& progress) {
+void EstimationStage::finish(const RefinementProgress& loops_progress, const RefinementProgress& progress) {
   const CalibrationEstimate calibration = result_.window_calibration = estimator_.calibration();
   result_.rig = rig_;
   result_.rig.camera = calibration.camera;
@@ -39,7 +44,7 @@ void EstimationStage::finish(const RefinementProgress& progress) {
   result_.time_offset_s = calibration.time_offset_s;
   map_.add(estimator_.finish());
   map_.setCalibration(result_.rig, result_.time_offset_s);
-  finishMap(progress);
+  finishMap(loops_progress, progress);
   OdometryStatistics& s = result_.statistics;
   s.keyframes = result_.map.keyframes.size();
   if (s.window_frames == 0) return;
@@ -50,12 +55,22 @@ void EstimationStage::finish(const RefinementProgress& progress) {
     *mean /= n;
 }
 
-void EstimationStage::finishMap(const RefinementProgress& progress) {
+void EstimationStage::refineMap(MapMaterial& material, const RefinementProgress& loops_progress,
+                                const RefinementProgress& progress) {
+  {
+    const StageClock::Scope scope(result_.statistics.loops);
+    result_.loops = loops_.find(material, loops_progress);
+  }
+  const StageClock::Scope scope(result_.statistics.refinement);
+  result_.refinement = refinement_.refine(material, progress, joinsOf(result_.loops));
+  if (result_.refinement.accepted) loops_.measureDrift(material, result_.loops);
+}
+
+void EstimationStage::finishMap(const RefinementProgress& loops_progress, const RefinementProgress& progress) {
   MapMaterial material = map_.material();
   const bool refine = configuration_.refinement.enabled && !material.keyframes.empty();
   if (refine && !result_.cancelled) {
-    const StageClock::Scope scope(result_.statistics.refinement);
-    result_.refinement = refinement_.refine(material, progress);
+    refineMap(material, loops_progress, progress);
   } else {
     const StageClock::Scope scope(result_.statistics.map_fitting);
     if (refine) result_.refinement.verdict = "not refined: the run was cancelled";

@@ -131,10 +131,13 @@ OdometryResult runOdometry(Recording& recording, const Configuration& configurat
   };
   options.threads == 1 ? trackOnThisThread(tracking, take) : trackOnItsOwnThread(tracking, take);
   if (result.cancelled) result.error.clear();  // of frames ahead of the last one processed
-  estimation.finish([&](double share) {
-    if (options.progress) options.progress({RunStage::kRefinement, static_cast<std::size_t>(100 * share), 100});
-    return share >= 1 || !cancelled();
-  });
+  const auto progressOf = [&](RunStage stage) {
+    return [&, stage](double share) {
+      if (options.progress) options.progress({stage, static_cast<std::size_t>(100 * share), 100});
+      return share >= 1 || !cancelled();
+    };
+  };
+  estimation.finish(progressOf(RunStage::kLoops), progressOf(RunStage::kRefinement));
   result.statistics.front_end = tracking.statistics();
   addClock(search, result);
   if (const std::string noise = check.noiseRemark(); !noise.empty())

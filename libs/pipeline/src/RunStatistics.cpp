@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <nlohmann/json.hpp>
 
+#include "lintel/core/Quantiles.h"
 #include "lintel/geometry/LensNames.h"
 
 namespace lintel {
@@ -29,9 +30,10 @@ Json stageJson(std::vector<double> ms) {
 }
 
 Json stagesJson(const OdometryStatistics& s) {
-  Json stages{{"decoding", stageJson(s.decoding.ms())},       {"tracking", stageJson(s.tracking.ms())},
-              {"estimation", stageJson(s.estimation.ms())},   {"mapping", stageJson(s.mapping.ms())},
-              {"map fitting", stageJson(s.map_fitting.ms())}, {"refinement", stageJson(s.refinement.ms())}};
+  Json stages{{"decoding", stageJson(s.decoding.ms())},     {"tracking", stageJson(s.tracking.ms())},
+              {"estimation", stageJson(s.estimation.ms())}, {"mapping", stageJson(s.mapping.ms())},
+              {"loops", stageJson(s.loops.ms())},           {"map fitting", stageJson(s.map_fitting.ms())},
+              {"refinement", stageJson(s.refinement.ms())}};
   for (const auto& [name, times] : s.front_end.stages)
     stages["tracking: " + name] = stageJson(std::vector<double>(times.ms.begin(), times.ms.end()));
   return stages;
@@ -58,6 +60,27 @@ Json blindJson(const OdometryStatistics& s) {
   Json stretches = Json::array();
   for (const Stretch& blind : s.blind) stretches.push_back({blind.from_s, blind.to_s});
   return stretches;
+}
+
+Json loopsJson(const OdometryResult& result) {
+  const LoopResult& loops = result.loops;
+  std::size_t accepted = 0;
+  Json refused = Json::object();
+  for (const PlacePair& pair : loops.places.pairs) {
+    if (pair.refusal.empty())
+      ++accepted;
+    else
+      refused[pair.refusal] = refused.value(pair.refusal, 0) + 1;
+  }
+  const auto median = [](std::vector<double> values) { return values.empty() ? Json() : Json(upperMedian(values)); };
+  return {{"searched", loops.searched},
+          {"frames_described", loops.places.described},
+          {"pairs", accepted},
+          {"pairs_refused", refused},
+          {"points", loops.places.same.size()},
+          {"points_joined", result.refinement.joined},
+          {"refused_by_refinement", result.refinement.joins_refused},
+          {"median_drift_m", {median(loops.drift_before_m), median(loops.drift_after_m)}}};
 }
 
 Json refinementJson(const OdometryResult& result) {
@@ -138,6 +161,7 @@ std::string statisticsJson(const OdometryResult& result, const Rig& given, const
                   {"map_points", result.map.points.size()},
                   {"map_lines", result.map.lines.size()},
                   {"map_lines_beside", result.lines_beside},
+                  {"loops", loopsJson(result)},
                   {"refinement", refinementJson(result)},
                   {"calibration", calibrationJson(result, given)},
                   {"cpu_ms_per_frame", s.frames > 0 ? process_ms / static_cast<double>(s.frames) : 0},

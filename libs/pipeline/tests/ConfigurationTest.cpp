@@ -115,7 +115,7 @@ TEST_F(ConfigurationTest, AnUnknownKeyNamesFileLineAndTheKnownOnes) {
   EXPECT_THAT(complaintOf("map:\n  coverage: 0.5\n  coverag: 1\n"),
               AllOf(StartsWith(file_ + ":3: unknown key map.coverag; known here: "), HasSubstr(" min_observations")));
   EXPECT_THAT(complaintOf("maps: {}\n"),
-              AllOf(StartsWith(file_ + ":1: unknown key maps"), HasSubstr("estimator features map")));
+              AllOf(StartsWith(file_ + ":1: unknown key maps"), HasSubstr("estimator features loops map")));
 }
 
 TEST_F(ConfigurationTest, AValueOfTheWrongTypeNamesFileLineAndWhatItMustBe) {

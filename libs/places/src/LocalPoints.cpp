@@ -10,9 +10,10 @@ namespace lintel {
 
 namespace {
 
-constexpr float kSamePlace_px = 6;  // features nearer than that are of one corner in several sizes
-constexpr int kLookLevel = 1;       // of a point: it may be found one size smaller or larger
-constexpr double kRatio = 0.85;     // of bits, to the next best elsewhere
+constexpr float kSamePlace_px = 6;                // features nearer than that are of one corner in several sizes
+constexpr int kLookLevel = 1;                     // of a point: it may be found one size smaller or larger
+constexpr std::int64_t kNear_ns = 2'000'000'000;  // neighbours in time see the same things
+constexpr double kRatio = 0.85;                   // of bits, to the next best elsewhere
 
 /// Bits in which every point, a row, differs from every feature.
 cv::Mat allBits(const std::vector<LocalPoint>& points, const PlaceView& view) {
@@ -54,7 +55,9 @@ std::vector<LocalPoint> localPoints(const std::vector<PlaceKeyframe>& keyframes,
   const std::size_t first = at - std::min(at, reach), last = std::min(at + reach, keyframes.size() - 1);
   std::vector<std::size_t> order{at};
   for (std::size_t k = first; k <= last; ++k)
-    if (k != at && keyframes[k].run == keyframes[at].run) order.push_back(k);
+    if (k != at && keyframes[k].run == keyframes[at].run &&
+        std::abs(keyframes[k].view->t_ns - keyframes[at].view->t_ns) <= kNear_ns)
+      order.push_back(k);
   for (const std::size_t k : order) {
     for (const PlaceFeature& feature : keyframes[k].view->features) {
       if (feature.track == PlaceFeature::kNoTrack || feature.level != kLookLevel) continue;

@@ -45,12 +45,13 @@ class Search {
  public:
   Search(const Camera& camera, const std::vector<PlaceKeyframe>& keyframes,
          const std::unordered_map<TrackId, Eigen::Vector3d>& points_w, const PlaceParams& params)
-      : camera_(camera), keyframes_(keyframes), points_w_(points_w), params_(params) {
+      : camera_(camera), keyframes_(keyframes), points_w_(points_w), params_(scaledTo(camera, params)) {
     for (const PlaceKeyframe& keyframe : keyframes) index_.add(*keyframe.view);
   }
 
-  PlaceReport run() {
+  PlaceReport run(const std::function<bool(double)>& progress) {
     for (std::size_t later = 0; later < keyframes_.size(); ++later) {
+      if (progress && !progress(static_cast<double>(later) / static_cast<double>(keyframes_.size()))) break;
       const std::size_t before = found_.size();
       for (const std::size_t earlier : candidatesOf(later))
         if (found_.size() < before + kEnough) check(earlier, later);
@@ -161,7 +162,7 @@ class Search {
   const Camera& camera_;
   const std::vector<PlaceKeyframe>& keyframes_;
   const std::unordered_map<TrackId, Eigen::Vector3d>& points_w_;
-  const PlaceParams& params_;
+  const PlaceParams params_;
   WordIndex index_;
   std::vector<Found> found_;
 };
@@ -169,8 +170,10 @@ class Search {
 }  // namespace
 
 PlaceReport findPlaces(const Camera& camera, const std::vector<PlaceKeyframe>& keyframes,
-                       const std::unordered_map<TrackId, Eigen::Vector3d>& points_w, const PlaceParams& params) {
-  return Search(camera, keyframes, points_w, params).run();
+                       const std::unordered_map<TrackId, Eigen::Vector3d>& points_w, const PlaceParams& params,
+                       const std::function<bool(double)>& progress) {
+  checkRanges(params, "loops.");
+  return Search(camera, keyframes, points_w, params).run(progress);
 }
 
 }  // namespace lintel

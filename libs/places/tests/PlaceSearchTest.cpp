@@ -115,6 +115,29 @@ TEST(PlaceSearch, RunsOfDifferentWorldsAreNotCompared) {
     EXPECT_LT(pair.later_ns, world.views[160]->t_ns);
 }
 
+TEST(PlaceSearch, ItTellsHowFarItIsAndEndsWhenAsked) {
+  const SyntheticPlaces world = flight({});
+  std::vector<double> told;
+  const auto until = [&](double most) {
+    told.clear();
+    return findPlaces(world.camera, world.keyframes, world.points_w, {}, [&](double share) {
+      told.push_back(share);
+      return share < most;
+    });
+  };
+  EXPECT_FALSE(until(2).pairs.empty());
+  EXPECT_EQ(told.size(), 200u);
+  EXPECT_TRUE(std::is_sorted(told.begin(), told.end()));
+  EXPECT_TRUE(until(0.5).pairs.empty());
+  EXPECT_EQ(told.size(), 101u);
+}
+
+TEST(PlaceSearch, AnAbsurdParameterIsRefusedByName) {
+  PlaceParams params;
+  params.min_points = 0;
+  EXPECT_THROW(findPlaces(placeCamera(), {}, {}, params), std::invalid_argument);
+}
+
 TEST(PlaceSearch, NothingIsFoundInNothing) {
   const PlaceReport report = findPlaces(placeCamera(), {}, {}, {});
   EXPECT_TRUE(report.pairs.empty());

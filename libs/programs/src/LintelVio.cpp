@@ -173,7 +173,8 @@ class LintelVio {
 
   OdometryResult process(Recording& recording, const Configuration& configuration, const StopSignals& stop) {
     Progress progress(err_, progressStyleFor(err_, quiet_), "processing", "frames", recording.expectedFrames());
-    std::optional<Progress> refining;
+    std::optional<Progress> afterwards;
+    RunStage shown = RunStage::kFrames;
     calibration_ = recording.rig();
     RunOptions options;
     options.threads = threads_;
@@ -183,12 +184,17 @@ class LintelVio {
     };
     options.progress = [&](const RunProgress& run) {
       if (run.stage == RunStage::kFrames) return progress.update(run.done);
-      if (!refining) {
+      if (shown == RunStage::kFrames) {
         progress.clear();
         checkpoint_->flush();
-        refining.emplace(err_, progressStyleFor(err_, quiet_), "refining", "%", run.total);
       }
-      refining->update(run.done);
+      if (shown != run.stage) {
+        if (afterwards) afterwards->clear();
+        const char* what = run.stage == RunStage::kLoops ? "looking for places seen before" : "refining";
+        afterwards.emplace(err_, progressStyleFor(err_, quiet_), what, "%", run.total);
+        shown = run.stage;
+      }
+      afterwards->update(run.done);
     };
     options.observer = [&](const Frame& frame, const FrameTracks& tracks, const WindowUpdate& update,
                            std::size_t done) {

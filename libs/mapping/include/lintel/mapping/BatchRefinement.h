@@ -8,6 +8,7 @@
 #include "lintel/estimator/EstimatorParams.h"
 #include "lintel/mapping/MapMaterial.h"
 #include "lintel/mapping/MapParams.h"
+#include "lintel/mapping/PointJoin.h"
 
 namespace lintel {
 
@@ -29,7 +30,11 @@ struct RefinementParams {
   int max_views = 40;                          ///< of a landmark that have residuals, spread over all it has; 0: all
   double line_max_sigma_direction_rad = 0.10;  ///< vaguer lines have no residuals
   double line_max_relative_sigma = 0.10;       ///< of their distance
-  double held_out_share = 0.05;                ///< of the points: left out, to check the result with
+  // points that were seen again, see joinPoints()
+  double join_sigma_px = 1;      ///< of a join, at least, beside that of the views
+  double join_first_px = 30;     ///< two visits of a point may be so far apart in the images in the first round, and
+  double join_last_px = 3;       ///< so far in the last one
+  double held_out_share = 0.05;  ///< of the points: left out, to check the result with
   // acceptance
   double max_moved_share = 0.05;  ///< keyframes may move by this share of the way travelled, and
   double max_moved_m = 0.30;      ///< this much more
@@ -50,6 +55,9 @@ struct RefinementParams {
     field("max_views", max_views, Range{0, 100000});
     field("line_max_sigma_direction_rad", line_max_sigma_direction_rad, Range{0.0001, 10});
     field("line_max_relative_sigma", line_max_relative_sigma, Range{0.0001, 100});
+    field("join_sigma_px", join_sigma_px, Range{0.01, 100});
+    field("join_first_px", join_first_px, ReferencePixels{0.1, 1000});
+    field("join_last_px", join_last_px, ReferencePixels{0.1, 1000});
     field("held_out_share", held_out_share, Range{0, 0.5});
     field("max_moved_share", max_moved_share, Range{0, 10});
     field("max_moved_m", max_moved_m, Range{0, 1000});
@@ -60,9 +68,11 @@ struct RefinementParams {
 
 /// What a refinement did, and whether it may be used.
 struct RefinementReport {
-  bool accepted = false;
-  std::string verdict;  ///< in words: why, or why not
+  bool accepted = false, cancelled = false;
+  bool joins_refused = false;  ///< the checks failed with points that were joined; this is the result without
+  std::string verdict;         ///< in words: why, or why not
   int rounds = 0, iterations = 0, merged = 0;
+  int joined = 0;  ///< of the points that were seen again, those that are one point in the last round
   std::size_t residuals = 0, points = 0, lines = 0;
   double cost_before = 0, cost_after = 0;                ///< robust, of the last adjustment's residuals
   double held_out_before_px = 0, held_out_after_px = 0;  ///< median error of points left out of it
@@ -88,11 +98,14 @@ class BatchRefinement {
                   const RefinementParams& params);
 
   /// Refines `material` (as MapBuilder::material() gives it): keyframes, calibration, landmarks, trajectory. When the
-  /// checks fail, only its landmarks are estimated, with the poses as they were.
-  RefinementReport refine(MapMaterial& material, const RefinementProgress& progress = {}) const;
+  /// checks fail, only its landmarks are estimated, with the poses as they were. `joins`: points that were probably
+  /// seen again; when the checks fail with them, it is tried without.
+  RefinementReport refine(MapMaterial& material, const RefinementProgress& progress = {},
+                          const std::vector<PointJoin>& joins = {}) const;
 
  private:
-  RefinementReport adjust(MapMaterial& material, const RefinementProgress& progress) const;
+  RefinementReport adjust(MapMaterial& material, const RefinementProgress& progress,
+                          const std::vector<PointJoin>& joins) const;
 
   Rig calibrated_;
   EstimatorParams estimator_;

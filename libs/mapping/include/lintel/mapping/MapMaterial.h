@@ -35,6 +35,8 @@ struct PointRecord {
   Eigen::Vector3d p_w = Eigen::Vector3d::Zero();
   double sigma_distance_m = 0;  ///< along the ray it was seen on
   double error_px = 0;          ///< mean over the inliers
+  double extra_sigma_px = 0;    ///< of its views, beside that of all views
+  std::vector<TrackId> joined;  ///< other tracks that were found to be of the same point
   std::vector<PointView> views;
 };
 

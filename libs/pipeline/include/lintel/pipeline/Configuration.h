@@ -8,6 +8,7 @@
 #include "lintel/estimator/EstimatorParams.h"
 #include "lintel/mapping/BatchRefinement.h"
 #include "lintel/mapping/MapParams.h"
+#include "lintel/places/PlaceSearch.h"
 #include "lintel/tracking/FrontEndParams.h"
 
 namespace lintel {
@@ -17,6 +18,7 @@ struct Configuration {
   FrontEndParams tracking;
   EstimatorParams estimator;
   MapParams map;
+  PlaceParams loops;
   RefinementParams refinement;
 
   template <class F>
@@ -25,6 +27,7 @@ struct Configuration {
     field("tracking", tracking);
     field("estimator", estimator);
     field("map", map);
+    field("loops", loops);
     field("refinement", refinement);
   }
 };

@@ -11,6 +11,7 @@
 #include "lintel/mapping/LineMap.h"
 #include "lintel/pipeline/Configuration.h"
 #include "lintel/pipeline/StageClock.h"
+#include "lintel/places/PlaceSearch.h"
 #include "lintel/sensing/Recording.h"
 #include "lintel/tracking/FrontEndStatistics.h"
 
@@ -40,13 +41,23 @@ struct OdometryStatistics {
   std::vector<Stretch> blind;                          ///< images showed too little: poses are the IMU's alone
   std::string last_wait;                               ///< what initialisation waited for last
   StageClock decoding, tracking, estimation, mapping;  ///< a value a frame
+  StageClock loops;                                    ///< a value a described frame, and one for the search
   StageClock map_fitting, refinement;                  ///< once, after the last frame
   FrontEndStatistics front_end;
+};
+
+/// Places that were seen again.
+struct LoopResult {
+  bool searched = false;               ///< not when they are left out, or when nothing is refined
+  PlaceReport places;                  ///< times of the recording's images, poses of the causal trajectory
+  std::vector<double> drift_before_m;  ///< of the causal trajectory, for every accepted pair
+  std::vector<double> drift_after_m;   ///< of the refined one; empty when there is none
 };
 
 struct OdometryResult {
   std::vector<OdometryPose> trajectory;          ///< causal: what was known when the frame had been processed
   std::vector<OdometryPose> refined_trajectory;  ///< empty when there was no refinement or it was not accepted
+  LoopResult loops;
   RefinementReport refinement;
   LineMap map;                             ///< holds the configuration it was made with
   int lines_beside = 0;                    ///< known, but beside better seen ones: see map.spacing
@@ -62,11 +73,11 @@ struct OdometryResult {
   std::string error;  ///< why the recording ended early; empty when it was read to its end or cancelled
 };
 
-/// The two parts of a run that take time.
-enum class RunStage { kFrames, kRefinement };
+/// The parts of a run that take time.
+enum class RunStage { kFrames, kLoops, kRefinement };
 
 /// How much of a stage is done: frames of those that the recording is known to have (else `total` is 0), or percent of
-/// the refinement.
+/// the search for places seen again and of the refinement.
 struct RunProgress {
   RunStage stage = RunStage::kFrames;
   std::size_t done = 0, total = 0;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <functional>
 #include <string>
 #include <unordered_map>
 #include <vector>
@@ -13,9 +14,10 @@
 
 namespace lintel {
 
-/// When two keyframes show the same place.
+/// When two frames show the same place.
 struct PlaceParams {
   bool enabled = true;
+  double interval_s = 0.2;       ///< between frames that are described
   double min_separation_s = 10;  ///< between the two visits
   int candidates = 4;            ///< earlier places that are tried for a keyframe
   int max_bits = 64;             ///< of 256 in which descriptors of one point may differ
@@ -29,6 +31,7 @@ struct PlaceParams {
   template <class F>
   void fields(F&& field) {
     field("enabled", enabled);
+    field("interval_s", interval_s, Range{0, 100});
     field("min_separation_s", min_separation_s, Range{1, 1e6});
     field("candidates", candidates, Range{1, 100});
     field("max_bits", max_bits, Range{1, 256});
@@ -41,7 +44,7 @@ struct PlaceParams {
   }
 };
 
-/// A keyframe as the odometry has it.
+/// A described frame as the odometry has it.
 struct PlaceKeyframe {
   Pose T_w_c;
   int run = 0;             ///< keyframes of different runs have different worlds
@@ -76,8 +79,11 @@ struct PlaceReport {
 /// Finds places that were seen again, and points that were tracked there both times. Appearance proposes (WordIndex),
 /// the geometry of the points decides (Resection), keyframes that follow each other must find the same drift. Poses of
 /// the odometry are used for the vertical and for what a few seconds are known to, not for where the later visit was.
-/// `keyframes` ascending in time, with views; `points_w` positions of tracked points.
+/// `keyframes` ascending in time, with views; `points_w` positions of tracked points. `progress` is called with the
+/// share that is done and ends the search by `false`. Throws std::invalid_argument, naming the parameter, when one is
+/// out of range.
 PlaceReport findPlaces(const Camera& camera, const std::vector<PlaceKeyframe>& keyframes,
-                       const std::unordered_map<TrackId, Eigen::Vector3d>& points_w, const PlaceParams& params);
+                       const std::unordered_map<TrackId, Eigen::Vector3d>& points_w, const PlaceParams& params,
+                       const std::function<bool(double)>& progress = {});
 
 }  // namespace lintel
