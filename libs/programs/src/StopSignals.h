@@ -9,7 +9,9 @@
 namespace lintel {
 
 /// SIGINT, SIGTERM and SIGHUP as a wish to stop, while an object of the class lives: the first is noted and nothing
-/// else, a second one ends the program at once. What was ignored before (nohup) stays ignored. One object at a time.
+/// else, one that comes half a second later or more ends the program at once. Those in between are the same wish:
+/// timeout(1) signals its program and then the program's group, and terminals and supervisors do the like. What was
+/// ignored before (nohup) stays ignored. One object at a time.
 class StopSignals {
  public:
   StopSignals();

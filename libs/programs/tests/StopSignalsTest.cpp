@@ -3,6 +3,9 @@
 
 #include <gmock/gmock.h>
 
+#include <chrono>
+#include <thread>
+
 namespace lintel {
 namespace {
 
@@ -25,9 +28,24 @@ TEST(StopSignalsDeathTest, ASecondOneEndsAtOnce) {
       {
         const StopSignals stop;
         std::raise(SIGINT);
+        std::this_thread::sleep_for(std::chrono::milliseconds(600));
         std::raise(SIGTERM);
       },
       testing::KilledBySignal(SIGTERM), "");
+}
+
+// timeout(1) sends its signal to the program and then to the program's group: twice to the program.
+TEST(StopSignals, TwoTogetherAreOneWish) {
+  const StopSignals stop;
+  sigset_t both, before;
+  sigemptyset(&both);
+  sigaddset(&both, SIGINT);
+  sigaddset(&both, SIGTERM);
+  pthread_sigmask(SIG_BLOCK, &both, &before);
+  std::raise(SIGINT);
+  std::raise(SIGTERM);
+  pthread_sigmask(SIG_SETMASK, &before, nullptr);  // both are delivered now
+  EXPECT_TRUE(stop.asked());
 }
 
 TEST(StopSignals, WhatWasIgnoredStaysIgnored) {
