@@ -124,8 +124,10 @@ PriorFactor::PriorFactor(std::vector<PriorBlock> blocks, Eigen::MatrixXd A, Eige
     : blocks_(std::move(blocks)),
       A_(std::move(A)),
       r_0_(std::move(r_0)),
-      information_(A_.transpose() * A_),
+      information_(Eigen::MatrixXd::Zero(A_.cols(), A_.cols())),
       anchor_(firstPose(blocks_)) {
+  information_.selfadjointView<Eigen::Lower>().rankUpdate(A_.transpose());
+  information_.triangularView<Eigen::StrictlyUpper>() = information_.transpose();
   for (const PriorBlock& block : blocks_) mutable_parameter_block_sizes()->push_back(block.manifold->AmbientSize());
   set_num_residuals(static_cast<int>(A_.rows()));
 }

@@ -31,24 +31,33 @@ struct Radial {
   }
 };
 
-}  // namespace
-
-Eigen::Vector2d Camera::distort(const Eigen::Vector2d& n) const {
-  const double x = n.x(), y = n.y(), r2 = x * x + y * y, radial = Radial(*this, r2).factor;
-  const double p1 = lens[2], p2 = lens[3];
-  return {x * radial + 2 * p1 * x * y + p2 * (r2 + 2 * x * x), y * radial + p1 * (r2 + 2 * y * y) + 2 * p2 * x * y};
+// Undistortion calls these a million times a minute, one after the other with the same radial factor.
+[[gnu::always_inline]] inline Eigen::Vector2d distorted(const Camera& camera, const Eigen::Vector2d& n,
+                                                        const Radial& radial) {
+  const double x = n.x(), y = n.y(), r2 = x * x + y * y, p1 = camera.lens[2], p2 = camera.lens[3];
+  return {x * radial.factor + 2 * p1 * x * y + p2 * (r2 + 2 * x * x),
+          y * radial.factor + p1 * (r2 + 2 * y * y) + 2 * p2 * x * y};
 }
 
-Eigen::Matrix2d Camera::distortJacobian(const Eigen::Vector2d& n) const {
-  const double x = n.x(), y = n.y(), p1 = lens[2], p2 = lens[3];
-  const Radial radial(*this, x * x + y * y);
-  const double dr = 2 * radial.derivative;
+[[gnu::always_inline]] inline Eigen::Matrix2d jacobianAt(const Camera& camera, const Eigen::Vector2d& n,
+                                                         const Radial& radial) {
+  const double x = n.x(), y = n.y(), p1 = camera.lens[2], p2 = camera.lens[3], dr = 2 * radial.derivative;
   Eigen::Matrix2d J;
   J(0, 0) = radial.factor + x * x * dr + 2 * p1 * y + 6 * p2 * x;
   J(0, 1) = x * y * dr + 2 * p1 * x + 2 * p2 * y;
   J(1, 0) = J(0, 1);
   J(1, 1) = radial.factor + y * y * dr + 6 * p1 * y + 2 * p2 * x;
   return J;
+}
+
+}  // namespace
+
+Eigen::Vector2d Camera::distort(const Eigen::Vector2d& n) const {
+  return distorted(*this, n, Radial(*this, n.squaredNorm()));
+}
+
+Eigen::Matrix2d Camera::distortJacobian(const Eigen::Vector2d& n) const {
+  return jacobianAt(*this, n, Radial(*this, n.squaredNorm()));
 }
 
 Eigen::Matrix2d Camera::coefficientJacobian(const Eigen::Vector2d& n) const {
@@ -59,12 +68,13 @@ Eigen::Matrix2d Camera::coefficientJacobian(const Eigen::Vector2d& n) const {
   return J;
 }
 
-Eigen::Vector2d Camera::undistort(const Eigen::Vector2d& distorted) const {
-  Eigen::Vector2d n = distorted;
+Eigen::Vector2d Camera::undistort(const Eigen::Vector2d& wanted) const {
+  Eigen::Vector2d n = wanted;
   for (int i = 0; i < 20; ++i) {
-    const Eigen::Vector2d error = distort(n) - distorted;
+    const Radial radial(*this, n.squaredNorm());
+    const Eigen::Vector2d error = distorted(*this, n, radial) - wanted;
     if (error.squaredNorm() < 1e-24) break;
-    const Eigen::Matrix2d J = distortJacobian(n);
+    const Eigen::Matrix2d J = jacobianAt(*this, n, radial);
     if (J.determinant() < kFolding) break;
     n -= J.inverse() * error;
   }
@@ -119,16 +129,18 @@ Eigen::Vector2d Camera::project(const Eigen::Vector3d& p_c, double scale, PixelJ
     return {fx * image.position.x() + cx, fy * image.position.y() + cy};
   }
   const double z = awayFromZero(p_c.z());
-  const Eigen::Vector2d n = p_c.head<2>() / z, distorted = distort(n);
+  const Eigen::Vector2d n = p_c.head<2>() / z;
+  const Radial radial(*this, n.squaredNorm());
+  const Eigen::Vector2d image = distorted(*this, n, radial);
   Eigen::Matrix<double, 2, 3> d_n;
   d_n << 1 / z, 0, -n.x() / z, 0, 1 / z, -n.y() / z;
-  const Eigen::Matrix2d d_distorted = focal.asDiagonal() * distortJacobian(n);
+  const Eigen::Matrix2d d_distorted = focal.asDiagonal() * jacobianAt(*this, n, radial);
   scaled.point = d_distorted * d_n;
-  const double r2 = n.squaredNorm(), share = model == LensModel::kRational ? 1 / Radial(*this, r2).divided_by : 1;
+  const double r2 = n.squaredNorm(), share = 1 / radial.divided_by;
   const double x = focal.x() * n.x() * share, y = focal.y() * n.y() * share;
-  scaled.intrinsics << scale * distorted.x(), 0, scale, 0, x * r2, x * r2 * r2, 0, scale * distorted.y(), 0, scale,
-      y * r2, y * r2 * r2;
-  return {fx * distorted.x() + cx, fy * distorted.y() + cy};
+  scaled.intrinsics << scale * image.x(), 0, scale, 0, x * r2, x * r2 * r2, 0, scale * image.y(), 0, scale, y * r2,
+      y * r2 * r2;
+  return {fx * image.x() + cx, fy * image.y() + cy};
 }
 
 double largestAngle(const Camera& camera) {

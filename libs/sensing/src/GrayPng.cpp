@@ -72,14 +72,15 @@ std::optional<GrayImage> decodeGrayPng(const std::vector<std::uint8_t>& file) {
   std::vector<std::uint8_t> compressed;
   if (!isPng(file) || !readChunks(file, image, compressed)) return std::nullopt;
   const auto width = static_cast<std::size_t>(image.width), height = static_cast<std::size_t>(image.height);
-  std::vector<std::uint8_t> rows((width + 1) * height);
+  const std::size_t size = (width + 1) * height;
+  const std::unique_ptr<std::uint8_t[]> rows(new std::uint8_t[size]);  // all of it is overwritten
   const std::unique_ptr<libdeflate_decompressor, void (*)(libdeflate_decompressor*)> inflater(
       libdeflate_alloc_decompressor(), libdeflate_free_decompressor);
   // without a place for the size, anything but exactly this many bytes is an error
-  if (!inflater || libdeflate_zlib_decompress(inflater.get(), compressed.data(), compressed.size(), rows.data(),
-                                              rows.size(), nullptr) != LIBDEFLATE_SUCCESS)
+  if (!inflater || libdeflate_zlib_decompress(inflater.get(), compressed.data(), compressed.size(), rows.get(), size,
+                                              nullptr) != LIBDEFLATE_SUCCESS)
     return std::nullopt;
-  if (!unfilterGray(rows, width, height, image.pixels)) return std::nullopt;
+  if (!unfilterGray(rows.get(), width, height, image.pixels)) return std::nullopt;
   return image;
 }
 

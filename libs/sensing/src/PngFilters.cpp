@@ -5,46 +5,121 @@
 #include <cstdlib>
 #include <cstring>
 
+#include "lintel/core/ForAvx2.h"
+
 namespace lintel {
 
 namespace {
 
 enum Filter : std::uint8_t { kNone, kSub, kUp, kAverage, kPaeth };
 
-constexpr std::size_t kLanes = 8;
+constexpr std::size_t kLanes = 16, kBlock = 8;  // rows at once; rows and columns that are transposed at once
+// vectors as arguments: the functions are inlined, no other program calls them
+#pragma GCC diagnostic ignored "-Wpsabi"
 using Lanes = std::int16_t __attribute__((vector_size(2 * kLanes)));
 using Bytes = std::uint8_t __attribute__((vector_size(kLanes)));
 
-Lanes absolute(const Lanes& v) { return v < 0 ? -v : v; }
+[[gnu::always_inline]] inline Lanes absolute(const Lanes& v) { return v < 0 ? -v : v; }
 
 /// Of left, up and upper left the one nearest to left + up - upper left.
-Lanes paeth(const Lanes& left, const Lanes& up, const Lanes& corner) {
+[[gnu::always_inline]] inline Lanes nearest(const Lanes& left, const Lanes& up, const Lanes& corner) {
   const Lanes to_left = absolute(up - corner), to_up = absolute(left - corner),
               to_corner = absolute(up + left - corner - corner);
   const Lanes nearer = to_up < to_left ? up : left, distance = to_up < to_left ? to_up : to_left;
   return to_corner < distance ? corner : nearer;
 }
 
-/// Eight rows of Paeth's filter at a time. A pixel needs its left neighbour, so that a row is one long chain; but the
-/// rows below can follow, each one pixel behind. Row i at step t is at pixel t - i, what is above it is what row i - 1
-/// had at step t - 1. `steps`: memory for a row of lanes a step.
-void paethRows(const std::uint8_t* rows, std::size_t width, const std::uint8_t* above, std::uint8_t* pixels,
-               std::vector<std::uint8_t>& steps) {
-  steps.assign(kLanes * (width + kLanes), 0);
-  for (std::size_t i = 0; i < kLanes; ++i)
-    for (std::size_t x = 0; x < width; ++x) steps[kLanes * (x + i) + i] = rows[i * (width + 1) + 1 + x];
-  Lanes value{}, up{};
-  for (std::size_t t = 0; t + 1 < width + kLanes; ++t) {
-    const Lanes corner = up, first{static_cast<std::int16_t>(t < width ? above[t] : 0)};
-    up = __builtin_shufflevector(value, first, 8, 0, 1, 2, 3, 4, 5, 6);
-    Bytes step;
-    std::memcpy(&step, &steps[kLanes * t], kLanes);
-    value = (__builtin_convertvector(step, Lanes) + paeth(value, up, corner)) & 255;
-    step = __builtin_convertvector(value, Bytes);
-    std::memcpy(&steps[kLanes * t], &step, kLanes);
+using Twice = std::uint8_t __attribute__((vector_size(2 * kBlock)));
+
+/// Eight rows of eight bytes become eight columns.
+void transpose(const std::uint8_t* from, std::size_t from_step, std::uint8_t* to, std::size_t to_step) {
+  const auto pair = [&](std::size_t i) {  // rows i and i + 1, byte by byte
+    Twice a{}, b{};
+    std::memcpy(&a, from + i * from_step, kBlock);
+    std::memcpy(&b, from + (i + 1) * from_step, kBlock);
+    return __builtin_shufflevector(a, b, 0, 16, 1, 17, 2, 18, 3, 19, 4, 20, 5, 21, 6, 22, 7, 23);
+  };
+  const auto low2 = [](Twice a, Twice b) {
+    return __builtin_shufflevector(a, b, 0, 1, 16, 17, 2, 3, 18, 19, 4, 5, 20, 21, 6, 7, 22, 23);
+  };
+  const auto high2 = [](Twice a, Twice b) {
+    return __builtin_shufflevector(a, b, 8, 9, 24, 25, 10, 11, 26, 27, 12, 13, 28, 29, 14, 15, 30, 31);
+  };
+  const auto low4 = [](Twice a, Twice b) {
+    return __builtin_shufflevector(a, b, 0, 1, 2, 3, 16, 17, 18, 19, 4, 5, 6, 7, 20, 21, 22, 23);
+  };
+  const auto high4 = [](Twice a, Twice b) {
+    return __builtin_shufflevector(a, b, 8, 9, 10, 11, 24, 25, 26, 27, 12, 13, 14, 15, 28, 29, 30, 31);
+  };
+  const Twice a = pair(0), b = pair(2), c = pair(4), d = pair(6);
+  const Twice two[4] = {low4(low2(a, b), low2(c, d)), high4(low2(a, b), low2(c, d)), low4(high2(a, b), high2(c, d)),
+                        high4(high2(a, b), high2(c, d))};
+  for (std::size_t i = 0; i < kBlock; ++i)
+    std::memcpy(to + i * to_step, reinterpret_cast<const std::uint8_t*>(two) + i * kBlock, kBlock);
+}
+
+/// What each row's filter says of a pixel, from its neighbours: all ones in the lanes of the rows that have the filter.
+struct Guess {
+  Lanes sub{}, up{}, average{}, paeth{};
+
+  [[gnu::always_inline]] Lanes of(const Lanes& left, const Lanes& above, const Lanes& corner) const {
+    return (left & sub) | (above & up) | (((left + above) >> 1) & average) | (nearest(left, above, corner) & paeth);
   }
-  for (std::size_t i = 0; i < kLanes; ++i)
-    for (std::size_t x = 0; x < width; ++x) pixels[i * width + x] = steps[kLanes * (x + i) + i];
+};
+
+/// Runs through the steps: to each row's byte its guess is added. Compiled twice; the program takes what the processor
+/// can do when it starts.
+LINTEL_FOR_AVX2_TOO void follow(const Guess& guess, const std::uint8_t* above, std::size_t width, std::uint8_t* steps) {
+  Lanes value{}, up{};
+  for (std::size_t t = 0; t + 1 < width + kLanes; ++t, steps += kLanes) {
+    const Lanes corner = up, first{static_cast<std::int16_t>(t < width ? above[t] : 0)};
+    up = __builtin_shufflevector(value, first, 16, 0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14);
+    Bytes step;
+    std::memcpy(&step, steps, kLanes);
+    value = (__builtin_convertvector(step, Lanes) + guess.of(value, up, corner)) & 255;
+    step = __builtin_convertvector(value, Bytes);
+    std::memcpy(steps, &step, kLanes);
+  }
+}
+
+/// Sixteen rows at a time. A pixel needs its left neighbour, so that a row is one long chain; but the rows below can
+/// follow, each one pixel behind. Row i at step t is at pixel t - i, what is above it is what row i - 1 had at step
+/// t - 1. `steps`: memory for a row of lanes a step. False where a row names none of the filters.
+bool sixteenRows(const std::uint8_t* rows, std::size_t width, const std::uint8_t* above, std::uint8_t* pixels,
+                 std::vector<std::uint8_t>& steps) {
+  Guess guess;
+  Lanes* const masks[] = {nullptr, &guess.sub, &guess.up, &guess.average, &guess.paeth};
+  for (std::size_t i = 0; i < kLanes; ++i) {
+    const std::uint8_t filter = rows[i * (width + 1)];
+    if (filter > kPaeth) return false;
+    if (filter != kNone) (*masks[filter])[i] = -1;
+  }
+  steps.resize(kLanes * (width + kLanes));
+  std::fill_n(steps.begin(), kLanes * kLanes, std::uint8_t{0});  // before a row begins its pixels count as 0
+  // steps at which every row is within its pixels, in blocks; the others one by one
+  const std::size_t begin = kLanes - 1, end = begin + (std::max(width, begin) - begin) / kBlock * kBlock;
+  const auto forBlocks = [&](const auto& visit) {
+    for (std::size_t i = 0; i < kLanes; i += kBlock)
+      for (std::size_t t = begin; t < end; t += kBlock) visit(&steps[kLanes * t + i], i, t - i);
+  };
+  const auto forOthers = [&](const auto& visit) {
+    for (std::size_t i = 0; i < kLanes; ++i)
+      for (std::size_t t = i; t < i + width; ++t)
+        if (t < begin || t >= end)
+          visit(steps[kLanes * t + i], i, t - i);
+        else
+          t = end - 1;
+  };
+  forBlocks([&](std::uint8_t* block, std::size_t i, std::size_t x) {
+    transpose(rows + i * (width + 1) + 1 + x, width, block, kLanes);
+  });
+  forOthers([&](std::uint8_t& lane, std::size_t i, std::size_t x) { lane = rows[i * (width + 1) + 1 + x]; });
+  follow(guess, above, width, steps.data());
+  forBlocks([&](const std::uint8_t* block, std::size_t i, std::size_t x) {
+    transpose(block, kLanes, pixels + i * width + x, width - 1);
+  });
+  forOthers([&](const std::uint8_t& lane, std::size_t i, std::size_t x) { pixels[i * width + x] = lane; });
+  return true;
 }
 
 int paeth(int left, int up, int corner) {
@@ -54,7 +129,8 @@ int paeth(int left, int up, int corner) {
   return to_up <= to_corner ? up : corner;
 }
 
-bool oneRow(const std::uint8_t* row, std::size_t width, const std::uint8_t* above, std::uint8_t* pixels) {
+bool oneRow(const std::uint8_t* row, std::size_t width, const std::uint8_t* above, std::uint8_t* pixels,
+            std::vector<std::uint8_t>&) {
   const std::uint8_t filter = *row++;
   if (filter > kPaeth) return false;
   int left = 0, corner = 0;
@@ -74,21 +150,14 @@ bool oneRow(const std::uint8_t* row, std::size_t width, const std::uint8_t* abov
 
 }  // namespace
 
-bool unfilterGray(const std::vector<std::uint8_t>& rows, std::size_t width, std::size_t height,
-                  std::vector<std::uint8_t>& pixels) {
+bool unfilterGray(const std::uint8_t* rows, std::size_t width, std::size_t height, std::vector<std::uint8_t>& pixels) {
   pixels.resize(width * height);
   std::vector<std::uint8_t> nothing(width), steps;
   const std::uint8_t* above = nothing.data();
-  const auto isPaeth = [&](std::size_t y) { return rows[y * (width + 1)] == kPaeth; };
   for (std::size_t y = 0; y < height;) {
-    std::size_t alike = 0;
-    while (alike < kLanes && y + alike < height && isPaeth(y + alike)) ++alike;
-    const std::size_t done = alike == kLanes ? kLanes : 1;
-    if (done == kLanes)
-      paethRows(&rows[y * (width + 1)], width, above, &pixels[y * width], steps);
-    else if (!oneRow(&rows[y * (width + 1)], width, above, &pixels[y * width]))
-      return false;
-    y += done;
+    const auto unfilter = y + kLanes <= height ? sixteenRows : oneRow;
+    if (!unfilter(rows + y * (width + 1), width, above, &pixels[y * width], steps)) return false;
+    y += y + kLanes <= height ? kLanes : 1;
     above = &pixels[(y - 1) * width];
   }
   return true;

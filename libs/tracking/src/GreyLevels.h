@@ -3,6 +3,7 @@
 
 #include <array>
 #include <cstddef>
+#include <cstdint>
 #include <opencv2/core.hpp>
 
 namespace lintel {
@@ -13,7 +14,8 @@ namespace lintel {
 template <int Beyond, std::size_t Most>
 void greyLevels(const cv::Mat& image, std::size_t count, std::array<float, Most>& x, std::array<float, Most>& y,
                 float* grey) {
-  std::array<int, Most> ix, iy, a0, a1, b0, b1;
+  std::array<int, Most> ix, iy;
+  std::array<std::uint32_t, Most> four;  // pixels: above, its neighbour to the right, below, its neighbour
   for (std::size_t i = 0; i < count; ++i) {
     ix[i] = static_cast<int>(x[i] + Beyond) - Beyond, iy[i] = static_cast<int>(y[i] + Beyond) - Beyond;
     x[i] -= static_cast<float>(ix[i]), y[i] -= static_cast<float>(iy[i]);
@@ -21,11 +23,14 @@ void greyLevels(const cv::Mat& image, std::size_t count, std::array<float, Most>
   const auto row = static_cast<std::ptrdiff_t>(image.step[0]);
   for (std::size_t i = 0; i < count; ++i) {
     const unsigned char *above = image.data + iy[i] * row + ix[i], *below = above + row;
-    a0[i] = above[0], a1[i] = above[1], b0[i] = below[0], b1[i] = below[1];
+    const std::uint32_t upper = above[0] | std::uint32_t{above[1]} << 8,
+                        lower = below[0] | std::uint32_t{below[1]} << 8;
+    four[i] = upper | lower << 16;
   }
   for (std::size_t i = 0; i < count; ++i) {
-    const float top = static_cast<float>(a0[i]) + x[i] * static_cast<float>(a1[i] - a0[i]);
-    const float bottom = static_cast<float>(b0[i]) + x[i] * static_cast<float>(b1[i] - b0[i]);
+    const auto pixel = [&](int bits) { return static_cast<int>(four[i] >> bits & 255); };
+    const float top = static_cast<float>(pixel(0)) + x[i] * static_cast<float>(pixel(8) - pixel(0));
+    const float bottom = static_cast<float>(pixel(16)) + x[i] * static_cast<float>(pixel(24) - pixel(16));
     grey[i] = top + y[i] * (bottom - top);
   }
 }

@@ -43,13 +43,14 @@ bool sampleSquare(const cv::Mat& image, const cv::Point2f& place, const Eigen::M
   if (!(place.x - reach_x >= 0 && place.y - reach_y >= 0 && place.x + reach_x < image.cols - 1 &&
         place.y + reach_y < image.rows - 1))
     return false;
-  std::array<float, kSide> x, y;
-  for (int v = -Half; v <= Half; ++v, grey += kSide) {
-    x[0] = place.x + A(0, 1) * static_cast<float>(v) - A(0, 0) * Half;
-    y[0] = place.y + A(1, 1) * static_cast<float>(v) - A(1, 0) * Half;
-    for (std::size_t u = 1; u < kSide; ++u) x[u] = x[u - 1] + A(0, 0), y[u] = y[u - 1] + A(1, 0);
-    greyLevels<0>(image, kSide, x, y, grey);
+  std::array<float, kSide * kSide> x, y;
+  std::size_t at = 0;
+  for (int v = -Half; v <= Half; ++v) {
+    x[at] = place.x + A(0, 1) * static_cast<float>(v) - A(0, 0) * Half;
+    y[at] = place.y + A(1, 1) * static_cast<float>(v) - A(1, 0) * Half;
+    for (++at; at % kSide != 0; ++at) x[at] = x[at - 1] + A(0, 0), y[at] = y[at - 1] + A(1, 0);
   }
+  greyLevels<0>(image, kSide * kSide, x, y, grey);
   return true;
 }
 

@@ -9,6 +9,7 @@
 #include "lintel/factors/TrackLoss.h"
 #include "solver/CameraEquations.h"
 #include "solver/Factor.h"
+#include "solver/PanelSquare.h"
 
 namespace lintel {
 
@@ -17,14 +18,10 @@ template <class Target>
 struct LandmarkBlock {
   static constexpr int T = Target::kTangent, kSize = Target::kSize;
   static constexpr BlockKey::Kind kKind = kKindOf<Target>;
-  using CameraPart = Eigen::Matrix<double, kCameraTangent, T>;
-
   struct Sighting {
     const ImageFactor<Target>* factor = nullptr;
     int camera = 0;
     ImageLinearisation<Target> linearised;
-    CameraPart W = CameraPart::Zero(), Y = CameraPart::Zero();  ///< camera-landmark block of H; the same times the
-                                                                ///< inverse root of the landmark's block
   };
 
   double* block = nullptr;
@@ -36,8 +33,9 @@ struct LandmarkBlock {
 
   Eigen::Matrix<double, T, T> H, inverse_root;
   Eigen::Matrix<double, T, 1> b, step;
-  CameraPart W_intrinsics, Y_intrinsics;
-  Eigen::Matrix<double, kDirectionTangent, T> W_direction, Y_direction;
+  Eigen::Matrix<double, Eigen::Dynamic, T> W, Y;  ///< the landmark's columns of H, in the rows of its cameras, of the
+                                                  ///< intrinsics and of its direction; the same times inverse_root
+  std::vector<RowRun> runs;                       ///< where these rows lie in CameraEquations
 
   /// The landmark's robust cost at the blocks' present values.
   double cost(const std::vector<CameraView>& views, const double* correction, const CameraLayout& layout) const;
@@ -47,20 +45,21 @@ struct LandmarkBlock {
                    CameraEquations& eq);
 
   /// Takes the landmark out of `eq`, `damping` times its diagonal added.
-  void eliminate(double damping, const CameraLayout& layout, CameraEquations& eq);
+  void eliminate(double damping, CameraEquations& eq);
 
   /// Its reaction to a step of the cameras, in `step`; returns its part of the model's decrease.
-  double backSubstitute(const Eigen::VectorXd& camera_step, double damping, const CameraLayout& layout);
+  double backSubstitute(const Eigen::VectorXd& camera_step, double damping);
 
  private:
   /// The cost of sightings whose squared residuals, robust, have this sum, and the weight that their track has.
   double trackCost(double squared, double& weight) const {
     return track_loss.cost(squared, Target::kRows * static_cast<int>(sightings.size()), T, weight);
   }
-  void addSighting(Sighting& sighting, double track_weight, const RowMajorMatrix& plus, const CameraLayout& layout,
+  void placeRows(const CameraLayout& layout);
+  Eigen::Index intrinsicsRow() const { return kCameraTangent * static_cast<Eigen::Index>(sightings.size()); }
+  void addSighting(std::size_t i, double track_weight, const RowMajorMatrix& plus, const CameraLayout& layout,
                    CameraEquations& eq);
   double addTie(const CameraLayout& layout, CameraEquations& eq);
-  void eliminateTie(const Eigen::Matrix<double, T, 1>& y, const CameraLayout& layout, CameraEquations& eq);
 };
 
 /// A residual of an image whose target is kept; it has no loss of its track.
@@ -79,12 +78,7 @@ struct KeptSighting {
 template <>
 double LandmarkBlock<PointTarget>::addTie(const CameraLayout& layout, CameraEquations& eq);
 template <>
-void LandmarkBlock<PointTarget>::eliminateTie(const Eigen::Vector3d& y, const CameraLayout& layout,
-                                              CameraEquations& eq);
-template <>
 double LandmarkBlock<LineTarget>::addTie(const CameraLayout& layout, CameraEquations& eq);
-template <>
-void LandmarkBlock<LineTarget>::eliminateTie(const Eigen::Vector4d& y, const CameraLayout& layout, CameraEquations& eq);
 
 // Compiled in PointBlock.cpp, LineBlock.cpp, KeptSighting.cpp.
 extern template struct LandmarkBlock<PointTarget>;

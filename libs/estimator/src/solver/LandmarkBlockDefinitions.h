@@ -60,11 +60,26 @@ double LandmarkBlock<Target>::cost(const std::vector<CameraView>& views, const d
 }
 
 template <class Target>
+void LandmarkBlock<Target>::placeRows(const CameraLayout& layout) {
+  runs.clear();
+  Eigen::Index rows = 0;
+  const auto place = [&](Eigen::Index to, Eigen::Index size) {
+    append({rows, to, size}, runs);
+    rows += size;
+  };
+  for (const Sighting& s : sightings) place(layout.camera(s.camera), kCameraTangent);
+  place(layout.intrinsics(), kIntrinsicsSize);
+  if (tie) place(layout.target(direction), kDirectionTangent);
+  W.resize(rows, T);
+}
+
+template <class Target>
 double LandmarkBlock<Target>::linearise(const std::vector<CameraView>& views, const double* correction,
                                         const CameraLayout& layout, CameraEquations& eq) {
   H.setZero();
   b.setZero();
-  W_intrinsics.setZero();
+  placeRows(layout);
+  W.template middleRows<kIntrinsicsSize>(intrinsicsRow()).setZero();
   RowMajorMatrix plus(Target::kSize, T);
   manifoldOf(kKindOf<Target>)->PlusJacobian(block, plus.data());
   double sum = 0, weight;
@@ -73,14 +88,15 @@ double LandmarkBlock<Target>::linearise(const std::vector<CameraView>& views, co
     sum += robustCost(loss, s.linearised.residual.squaredNorm(), weight);
   }
   sum = trackCost(2 * sum, weight);
-  for (Sighting& s : sightings) addSighting(s, weight, plus, layout, eq);
+  for (std::size_t i = 0; i < sightings.size(); ++i) addSighting(i, weight, plus, layout, eq);
   if (tie) sum += addTie(layout, eq);
   return sum;
 }
 
 template <class Target>
-void LandmarkBlock<Target>::addSighting(Sighting& sighting, double track_weight, const RowMajorMatrix& plus,
+void LandmarkBlock<Target>::addSighting(std::size_t i, double track_weight, const RowMajorMatrix& plus,
                                         const CameraLayout& layout, CameraEquations& eq) {
+  const Sighting& sighting = sightings[i];
   const ImageLinearisation<Target>& l = sighting.linearised;
   double weight;
   robustCost(loss, l.residual.squaredNorm(), weight);
@@ -91,8 +107,8 @@ void LandmarkBlock<Target>::addSighting(Sighting& sighting, double track_weight,
   const Eigen::Matrix<double, Target::kRows, 1> r = root * l.residual;
   H.noalias() += J.transpose() * J;
   b.noalias() += J.transpose() * r;
-  W_intrinsics.noalias() += Ji.transpose() * J;
-  sighting.W.noalias() = Jc.transpose() * J;
+  W.template middleRows<kIntrinsicsSize>(intrinsicsRow()).noalias() += Ji.transpose() * J;
+  W.template middleRows<kCameraTangent>(kCameraTangent * static_cast<Eigen::Index>(i)).noalias() = Jc.transpose() * J;
   const Eigen::Index at = layout.camera(sighting.camera), intrinsics = layout.intrinsics();
   eq.H.block<kCameraTangent, kCameraTangent>(at, at).noalias() += Jc.transpose() * Jc;
   eq.H.block<kIntrinsicsSize, kCameraTangent>(intrinsics, at).noalias() += Ji.transpose() * Jc;
@@ -102,37 +118,20 @@ void LandmarkBlock<Target>::addSighting(Sighting& sighting, double track_weight,
 }
 
 template <class Target>
-void LandmarkBlock<Target>::eliminate(double damping, const CameraLayout& layout, CameraEquations& eq) {
+void LandmarkBlock<Target>::eliminate(double damping, CameraEquations& eq) {
   inverse_root = landmark_block::inverseRoot<T>(H, damping);
   const Eigen::Matrix<double, T, 1> y = inverse_root.transpose() * b;
-  const Eigen::Index intrinsics = layout.intrinsics();
-  Y_intrinsics.noalias() = W_intrinsics * inverse_root;
-  for (std::size_t i = 0; i < sightings.size(); ++i) {
-    Sighting& a = sightings[i];
-    a.Y.noalias() = a.W * inverse_root;
-    const Eigen::Index at = layout.camera(a.camera);
-    for (std::size_t j = 0; j <= i; ++j) {
-      const Sighting& other = sightings[j];
-      eq.H.block<kCameraTangent, kCameraTangent>(at, layout.camera(other.camera)).noalias() -=
-          a.Y * other.Y.transpose();
-    }
-    eq.H.block<kIntrinsicsSize, kCameraTangent>(intrinsics, at).noalias() -= Y_intrinsics * a.Y.transpose();
-    eq.b.segment<kCameraTangent>(at).noalias() -= a.Y * y;
-  }
-  eq.H.block<kIntrinsicsSize, kIntrinsicsSize>(intrinsics, intrinsics).noalias() -=
-      Y_intrinsics * Y_intrinsics.transpose();
-  eq.b.segment<kIntrinsicsSize>(intrinsics).noalias() -= Y_intrinsics * y;
-  if (tie) eliminateTie(y, layout, eq);
+  Y = W.lazyProduct(inverse_root);
+  subtractSquare<T>(Y, runs, eq.H);
+  for (const RowRun& run : runs)
+    eq.b.segment(run.to, run.size).noalias() -= Y.middleRows(run.from, run.size).lazyProduct(y);
 }
 
 template <class Target>
-double LandmarkBlock<Target>::backSubstitute(const Eigen::VectorXd& camera_step, double damping,
-                                             const CameraLayout& layout) {
+double LandmarkBlock<Target>::backSubstitute(const Eigen::VectorXd& camera_step, double damping) {
   Eigen::Matrix<double, T, 1> y = inverse_root.transpose() * b;
-  for (const Sighting& s : sightings)
-    y += s.Y.transpose() * camera_step.segment<kCameraTangent>(layout.camera(s.camera));
-  y += Y_intrinsics.transpose() * camera_step.segment<kIntrinsicsSize>(layout.intrinsics());
-  if (tie) y += Y_direction.transpose() * camera_step.segment<kDirectionTangent>(layout.target(direction));
+  for (const RowRun& run : runs)
+    y += Y.middleRows(run.from, run.size).transpose().lazyProduct(camera_step.segment(run.to, run.size));
   step = -inverse_root * y;
   const auto damped = damping * H.diagonal().cwiseMax(landmark_block::kLeastDamping);
   return 0.5 * step.dot(damped.cwiseProduct(step) - b);

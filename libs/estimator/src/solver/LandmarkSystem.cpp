@@ -137,13 +137,13 @@ double LandmarkSystem::linearise(const std::vector<CameraView>& views) {
 
 CameraEquations LandmarkSystem::eliminate(double damping) {
   CameraEquations eq = direct_;
-  eachLandmark(landmarks_, [&](auto& landmark) { landmark.eliminate(damping, layout_, eq); });
+  eachLandmark(landmarks_, [&](auto& landmark) { landmark.eliminate(damping, eq); });
   return eq;
 }
 
 double LandmarkSystem::backSubstitute(const Eigen::VectorXd& camera_step, double damping) {
   double decrease = 0;
-  eachLandmark(landmarks_, [&](auto& landmark) { decrease += landmark.backSubstitute(camera_step, damping, layout_); });
+  eachLandmark(landmarks_, [&](auto& landmark) { decrease += landmark.backSubstitute(camera_step, damping); });
   return decrease;
 }
 

@@ -22,24 +22,11 @@ double LandmarkBlock<LineTarget>::addTie(const CameraLayout& layout, CameraEquat
   const Eigen::Matrix<double, 3, kDirectionTangent> Jd = J_direction * plus_direction;
   H += weight * J.transpose() * J;
   b += weight * J.transpose() * r;
-  W_direction = weight * Jd.transpose() * J;
+  W.bottomRows<kDirectionTangent>() = weight * Jd.transpose() * J;
   const Eigen::Index at = layout.target(direction);
   eq.H.block<kDirectionTangent, kDirectionTangent>(at, at) += weight * Jd.transpose() * Jd;
   eq.b.segment<kDirectionTangent>(at) += weight * Jd.transpose() * r;
   return cost;
-}
-
-template <>
-void LandmarkBlock<LineTarget>::eliminateTie(const Eigen::Vector4d& y, const CameraLayout& layout,
-                                             CameraEquations& eq) {
-  Y_direction = W_direction * inverse_root;
-  const auto& Yd = Y_direction;
-  const Eigen::Index at = layout.target(direction);
-  for (const Sighting& a : sightings)
-    eq.H.block<kDirectionTangent, kCameraTangent>(at, layout.camera(a.camera)) -= Yd * a.Y.transpose();
-  eq.H.block<kDirectionTangent, kIntrinsicsSize>(at, layout.intrinsics()) -= Yd * Y_intrinsics.transpose();
-  eq.H.block<kDirectionTangent, kDirectionTangent>(at, at) -= Yd * Yd.transpose();
-  eq.b.segment<kDirectionTangent>(at) -= Yd * y;
 }
 
 template struct LandmarkBlock<LineTarget>;

@@ -7,8 +7,6 @@ template <>
 double LandmarkBlock<PointTarget>::addTie(const CameraLayout&, CameraEquations&) {
   return 0;
 }
-template <>
-void LandmarkBlock<PointTarget>::eliminateTie(const Eigen::Vector3d&, const CameraLayout&, CameraEquations&) {}
 
 template struct LandmarkBlock<PointTarget>;
 

@@ -131,6 +131,21 @@ double ReducedSystem::addOther(const Factor& factor) {
   return cost;
 }
 
+namespace {
+
+/// C' from both sides on the rows and columns `at` of H, and on these rows of `a` and `b`.
+template <int N>
+void turnBlock(const Eigen::Matrix<double, N, N>& C, Eigen::Index at, Eigen::MatrixXd& H, Eigen::MatrixXd& a,
+               Eigen::VectorXd& b) {
+  const Eigen::Index n = C.cols();
+  H.middleCols<N>(at, n) = H.middleCols<N>(at, n).lazyProduct(C).eval();
+  H.middleRows<N>(at, n) = C.transpose().lazyProduct(H.middleRows<N>(at, n)).eval();
+  a.middleRows<N>(at, n) = C.transpose().lazyProduct(a.middleRows<N>(at, n)).eval();
+  b.segment<N>(at, n) = C.transpose().lazyProduct(b.segment<N>(at, n)).eval();
+}
+
+}  // namespace
+
 /// A prior's information does not change, only the tangent spaces turn, and the alignment with its anchor moves:
 /// H = C' A'A C with C = blocks on the diagonal + G E in the anchor's columns.
 double ReducedSystem::addPrior(const Factor& factor, const PriorFactor& prior) {
@@ -148,10 +163,12 @@ double ReducedSystem::addPrior(const Factor& factor, const PriorFactor& prior) {
   for (std::size_t i = 0; i < blocks.size(); ++i) {
     const Eigen::MatrixXd& C = difference.by_block[i];
     if (C.size() == 0) continue;
-    H.middleCols(to.from[i], C.cols()) = H.middleCols(to.from[i], C.cols()).lazyProduct(C).eval();
-    H.middleRows(to.from[i], C.cols()) = C.transpose().lazyProduct(H.middleRows(to.from[i], C.cols())).eval();
-    turned.middleRows(to.from[i], C.cols()) = C.transpose().lazyProduct(turned.middleRows(to.from[i], C.cols())).eval();
-    gradient.segment(to.from[i], C.cols()) = C.transpose().lazyProduct(gradient.segment(to.from[i], C.cols())).eval();
+    if (C.cols() == kPointTangent)
+      turnBlock<kPointTangent>(C, to.from[i], H, turned, gradient);
+    else if (C.cols() == kPoseTangent)
+      turnBlock<kPoseTangent>(C, to.from[i], H, turned, gradient);
+    else
+      turnBlock<Eigen::Dynamic>(C, to.from[i], H, turned, gradient);
   }
   if (prior.anchor() >= 0) {
     const Eigen::Index at = to.from[static_cast<std::size_t>(prior.anchor())];
