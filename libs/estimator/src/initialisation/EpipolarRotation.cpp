@@ -38,8 +38,9 @@ void addPair(const FramePair& pair, const Eigen::Vector3d& bias_gyro, double wid
   Eigen::Vector2d bt = Eigen::Vector2d::Zero();
   for (std::size_t i = 0; i < normals.size(); ++i) {
     const double e = t.dot(normals[i]), scaled = e / width_rad, w = 1 / (1 + scaled * scaled);
-    // t . (a x dR u),  dR u = -R [u]x dtheta
-    const Eigen::RowVector3d J = -t.transpose() * skew(pair.rays[i].first) * R * skew(pair.rays[i].second) * d_theta;
+    // t . (a x dR u) = (t x a) . dR u,  dR u = -R (u x dtheta)
+    const auto& [a, u] = pair.rays[i];
+    const Eigen::RowVector3d J = -(R.transpose() * t.cross(a)).cross(u).transpose() * d_theta;
     const Eigen::RowVector2d Jt = normals[i].transpose() * across;
     system.H += w * J.transpose() * J;
     system.b += w * J.transpose() * e;

@@ -45,7 +45,8 @@ std::vector<FramePair> windowPairs(const SlidingWindow& window) {
 }  // namespace
 
 GyroAlignment alignGyro(const SlidingWindow& window) {
-  constexpr double kWidth_rad = 0.004;  // about two pixels of EuRoC's camera
+  constexpr double kWidth_rad = 0.004;     // about two pixels of EuRoC's camera
+  constexpr double kSettled_rad_s = 1e-5;  // far below what a start leaves to be refined
   GyroAlignment result;
   const std::vector<FramePair> pairs = windowPairs(window);
   if (pairs.size() < 5) return result;
@@ -54,7 +55,7 @@ GyroAlignment alignGyro(const SlidingWindow& window) {
     const Eigen::Vector3d step = -solveLdlt(system.H, system.b);
     result.bias_gyro += step;
     result.rms_rad = std::sqrt(system.sum / system.weights);
-    if (step.norm() < 1e-6) break;
+    if (step.norm() < kSettled_rad_s) break;
   }
   result.ok = result.bias_gyro.allFinite() && result.bias_gyro.norm() < 0.5;
   return result;

@@ -15,7 +15,7 @@
 #include "lintel/core/Quantiles.h"
 #include "lintel/geometry/Frames.h"
 #include "lintel/geometry/Rotation.h"
-#include "solver/Marginalizer.h"
+#include "solver/Marginals.h"
 #include "solver/WindowSolver.h"
 #include "window/OutlierRejection.h"
 #include "window/WindowFactors.h"
@@ -255,33 +255,22 @@ double Initializer::relativeScaleSigma(SlidingWindow& window) const {
   frozen.extrinsic_rotation_sigma_rad = frozen.extrinsic_translation_sigma_m = 1e-6;
   frozen.refine_camera = frozen.refine_time_offset = false;
   factors.addCalibrationPriors(frozen, T_b_c_calibrated_);
-  std::set<BlockKey> landmarks;
-  for (const Factor& factor : factors.factors())
-    for (const BlockKey& key : factor.blocks)
-      if (key.kind == BlockKey::kPoint) landmarks.insert(key);
-  const auto prior = marginalise(window, factors.factors(), landmarks);
-  if (!prior) return std::numeric_limits<double>::infinity();
+  ReducedSystem system(window, factors.factors(), {}, {});
+  system.linearise();
+  constexpr double kFloor = 1e-9;
+  const Marginals marginals(system.eliminate(), kFloor);
 
-  // Information of everything that stays; the sigma of the distance to the frame farthest from the first.
-  const WindowFrame* farthest = &window.frames.back();
-  for (const WindowFrame& f : window.frames)
-    if ((f.T_w_b().p - window.frames.front().T_w_b().p).norm() >
-        (farthest->T_w_b().p - window.frames.front().T_w_b().p).norm())
-      farthest = &f;
-  Eigen::Index total = 0, place = -1;
-  for (const BlockKey& key : prior->blocks) {
-    if (key.kind == BlockKey::kPose && key.id == farthest->id) place = total;
-    total += manifoldOf(key.kind)->TangentSize();
-  }
-  Eigen::MatrixXd H = prior->factor->information();
-  H.diagonal().array() += 1e-9;
-  const Eigen::Vector3d displacement = farthest->T_w_b().p - window.frames.front().T_w_b().p;
-  const double distance = displacement.norm();
-  if (place < 0 || distance < 1e-6) return std::numeric_limits<double>::infinity();
-  Eigen::VectorXd direction = Eigen::VectorXd::Zero(total);
-  direction.segment<3>(place) = displacement / distance;
-  const double variance = direction.dot(H.ldlt().solve(direction));
-  return variance > 0 ? std::sqrt(variance) / distance : std::numeric_limits<double>::infinity();
+  // The sigma of the distance to the frame farthest from the first.
+  const Eigen::Vector3d from = window.frames.front().T_w_b().p;
+  const auto distance = [&](const WindowFrame& frame) { return (frame.T_w_b().p - from).norm(); };
+  const WindowFrame& farthest =
+      *std::max_element(window.frames.begin(), window.frames.end(),
+                        [&](const WindowFrame& a, const WindowFrame& b) { return distance(a) < distance(b); });
+  const Eigen::Index place = marginals.offsetOf({BlockKey::kPose, farthest.id});
+  if (!marginals.ok() || place < 0 || distance(farthest) < 1e-6) return std::numeric_limits<double>::infinity();
+  Eigen::VectorXd direction = Eigen::VectorXd::Zero(marginals.size());
+  direction.segment<3>(place) = (farthest.T_w_b().p - from).normalized();
+  return std::sqrt(marginals.variance(direction)) / distance(farthest);
 }
 
 void Initializer::setBiasPrior(SlidingWindow& window, const MotionBlock& mean, double gyro_sigma,

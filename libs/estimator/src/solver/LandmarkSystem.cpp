@@ -64,7 +64,9 @@ bool LandmarkSystem::addSighting(SlidingWindow& window, const Factor& factor, co
       LandmarkBlock<Target>& landmark = landmarkOf<Target>(window, key.id);
       landmark.loss = factor.loss;
       landmark.track_loss = TrackLoss(factor.track_freedom);
-      landmark.sightings.push_back({image, camera});
+      auto& sighting = landmark.sightings.emplace_back();
+      sighting.factor = image;
+      sighting.camera = camera;
       return true;
     }
   }
