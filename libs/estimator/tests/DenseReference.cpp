@@ -4,6 +4,7 @@
 #include <ceres/problem.h>
 #include <ceres/solver.h>
 
+#include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
 #include <map>
@@ -121,6 +122,23 @@ NormalEquations linearise(SlidingWindow& window, const std::vector<Factor>& fact
     }
   }
   return eq;
+}
+
+Eigen::MatrixXd solved(const Eigen::MatrixXd& A, const Eigen::MatrixXd& B) { return A.ldlt().solve(B); }
+
+NormalEquations withoutFirst(const NormalEquations& equations, Eigen::Index m) {
+  const Eigen::Index n = equations.H.rows() - m;
+  NormalEquations rest;
+  for (std::size_t i = 0; i < equations.offsets.size(); ++i) {
+    if (equations.offsets[i] < m) continue;
+    rest.offsets.push_back(equations.offsets[i] - m);
+    if (i < equations.blocks.size()) rest.blocks.push_back(equations.blocks[i]);
+  }
+  const Eigen::LDLT<Eigen::MatrixXd> first(equations.H.topLeftCorner(m, m));
+  const Eigen::MatrixXd gain = first.solve(equations.H.topRightCorner(m, n)).transpose();
+  rest.H = equations.H.bottomRightCorner(n, n) - gain * equations.H.topRightCorner(m, n);
+  rest.b = equations.b.tail(n) - gain * equations.b.head(m);
+  return rest;
 }
 
 double solveWithCeres(SlidingWindow& window, const std::vector<Factor>& factors) {

@@ -12,6 +12,12 @@ namespace lintel::test {
 /// plain, the reference for ReducedSystem. Blocks in `first` come first (points and lines before others).
 NormalEquations linearise(SlidingWindow& window, const std::vector<Factor>& factors, const std::set<BlockKey>& first);
 
+/// X of A X = B for a symmetric positive definite A; takes seconds to compile, so that it is done once for all tests.
+Eigen::MatrixXd solved(const Eigen::MatrixXd& A, const Eigen::MatrixXd& B);
+
+/// The equations of the blocks that are left when those of the first `m` rows are eliminated in one dense solve.
+NormalEquations withoutFirst(const NormalEquations& equations, Eigen::Index m);
+
 /// Minimises the residuals with Ceres on copies of the blocks, then writes them back; returns the final cost. The
 /// reference for WindowSolver.
 double solveWithCeres(SlidingWindow& window, const std::vector<Factor>& factors);

@@ -69,7 +69,7 @@ struct GaugeFreePrior {
     RowMajorMatrix minus(kPointTangent, kPointSize);
     PointManifold().MinusJacobian(point_0.data(), minus.data());
     G.block<3, 4>(kPointAt, 0) = minus * moved;
-    A -= A * G * (G.transpose() * G).inverse() * G.transpose();
+    A -= A * G * Eigen::Matrix4d(G.transpose() * G).inverse() * G.transpose();
     factor = std::make_unique<PriorFactor>(std::move(blocks), A, Eigen::VectorXd::LinSpaced(8, -1, 1));
   }
 };

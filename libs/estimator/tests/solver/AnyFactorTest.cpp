@@ -2,7 +2,6 @@
 // Factors of kinds that the solver has no code for, added as doc/architecture.md says under "A factor".
 #include <gtest/gtest.h>
 
-#include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
 
@@ -129,14 +128,11 @@ void expectDense(SlidingWindow& window, const std::vector<Factor>& factors) {
         eliminated.insert(key);
       }
   ASSERT_GT(eliminated.size(), 10u);
-  const NormalEquations dense = linearise(window, factors, eliminated);
-  const Eigen::Index m = dense.offsets[eliminated.size()], n = dense.H.rows() - m;
-  const Eigen::LDLT<Eigen::MatrixXd> Hmm(dense.H.topLeftCorner(m, m));
-  const Eigen::MatrixXd H =
-      dense.H.bottomRightCorner(n, n) - dense.H.bottomLeftCorner(n, m) * Hmm.solve(dense.H.topRightCorner(m, n));
-  const Eigen::VectorXd b = dense.b.tail(n) - dense.H.bottomLeftCorner(n, m) * Hmm.solve(dense.b.head(m));
-  ASSERT_EQ(reduced.blocks, std::vector<BlockKey>(dense.blocks.begin() + static_cast<std::ptrdiff_t>(eliminated.size()),
-                                                  dense.blocks.end()));
+  const NormalEquations all = linearise(window, factors, eliminated),
+                        dense = withoutFirst(all, all.offsets[eliminated.size()]);
+  const Eigen::MatrixXd& H = dense.H;
+  const Eigen::VectorXd& b = dense.b;
+  ASSERT_EQ(reduced.blocks, dense.blocks);
   const Eigen::VectorXd scale = H.diagonal().cwiseSqrt().cwiseMax(1e-3);
   EXPECT_LT(((reduced.b - b).cwiseQuotient(scale)).norm(), 1e-7 * b.cwiseQuotient(scale).norm());
   const Eigen::MatrixXd difference =

@@ -3,8 +3,6 @@
 
 #include <gtest/gtest.h>
 
-#include <Eigen/Cholesky>
-
 #include "DenseReference.h"
 #include "TestWindow.h"
 #include "landmarks/LineTriangulation.h"
@@ -68,18 +66,16 @@ TEST_F(ReducedSystemTest, EqualsTheSchurComplementOfTheDenseSystem) {
   ASSERT_GT(eliminated.size(), 15u);
   ASSERT_GE(lines_, 2);
   ASSERT_GE(vanishing_, 1);
-  const NormalEquations dense = linearise(window_, factors_->factors(), eliminated);
-  const Eigen::Index m = dense.offsets[eliminated.size()], n = dense.H.rows() - m;
-  const Eigen::LDLT<Eigen::MatrixXd> Hmm(dense.H.topLeftCorner(m, m));
-  const Eigen::MatrixXd H =
-      dense.H.bottomRightCorner(n, n) - dense.H.bottomLeftCorner(n, m) * Hmm.solve(dense.H.topRightCorner(m, n));
-  const Eigen::VectorXd b = dense.b.tail(n) - dense.H.bottomLeftCorner(n, m) * Hmm.solve(dense.b.head(m));
+  const NormalEquations all = linearise(window_, factors_->factors(), eliminated),
+                        dense = withoutFirst(all, all.offsets[eliminated.size()]);
+  const Eigen::MatrixXd& H = dense.H;
+  const Eigen::VectorXd& b = dense.b;
+  const Eigen::Index n = H.rows();
 
   ReducedSystem system(window_, factors_->factors(), {}, {});
   system.linearise();
   const NormalEquations reduced = system.eliminate();
-  ASSERT_EQ(reduced.blocks, std::vector<BlockKey>(dense.blocks.begin() + static_cast<std::ptrdiff_t>(eliminated.size()),
-                                                  dense.blocks.end()));
+  ASSERT_EQ(reduced.blocks, dense.blocks);
   const Eigen::VectorXd scale = H.diagonal().cwiseSqrt();
   for (Eigen::Index i = 0; i < n; ++i) {
     EXPECT_NEAR(reduced.b[i], b[i], 1e-7 * scale[i] * b.cwiseQuotient(scale).norm()) << i;
@@ -91,7 +87,7 @@ TEST_F(ReducedSystemTest, EqualsTheSchurComplementOfTheDenseSystem) {
 TEST_F(ReducedSystemTest, AStepSolvesTheDampedDenseSystem) {
   // no damping to speak of: the whole system's solution, landmarks included
   const NormalEquations dense = linearise(window_, factors_->factors(), landmarks());
-  const Eigen::VectorXd expected = -dense.H.ldlt().solve(dense.b);
+  const Eigen::VectorXd expected = -solved(dense.H, dense.b);
   const double decrease = -0.5 * expected.dot(dense.b);
   const SlidingWindow before = window_;
   ReducedSystem system(window_, factors_->factors(), {}, {});
@@ -100,7 +96,7 @@ TEST_F(ReducedSystemTest, AStepSolvesTheDampedDenseSystem) {
   ASSERT_TRUE(system.solve(1e-12));
   EXPECT_NEAR(system.modelDecrease(), decrease, 1e-4 * decrease);
   const NormalEquations states = system.eliminate();
-  const Eigen::VectorXd step_of_states = -states.H.ldlt().solve(states.b);
+  const Eigen::VectorXd step_of_states = -solved(states.H, states.b);
   EXPECT_NEAR(system.statesMove(), std::sqrt(step_of_states.dot(states.H * step_of_states)),
               1e-4 * system.statesMove());
   system.apply();
