@@ -40,17 +40,18 @@ bool sampleSquare(const cv::Mat& image, const cv::Point2f& place, const Eigen::M
   constexpr int kSide = 2 * Half + 1;
   const float reach_x = (std::abs(A(0, 0)) + std::abs(A(0, 1))) * Half,
               reach_y = (std::abs(A(1, 0)) + std::abs(A(1, 1))) * Half;
-  if (!(place.x - reach_x >= 0 && place.y - reach_y >= 0 && place.x + reach_x < image.cols - 1 &&
-        place.y + reach_y < image.rows - 1))
+  const auto last_x = static_cast<float>(image.cols - 1), last_y = static_cast<float>(image.rows - 1);
+  if (!(place.x - reach_x >= 0 && place.y - reach_y >= 0 && place.x + reach_x < last_x && place.y + reach_y < last_y))
     return false;
-  std::array<float, kSide * kSide> x, y;
+  constexpr std::size_t kPlaces = std::size_t{kSide} * kSide;
+  std::array<float, kPlaces> x, y;
   std::size_t at = 0;
   for (int v = -Half; v <= Half; ++v) {
     x[at] = place.x + A(0, 1) * static_cast<float>(v) - A(0, 0) * Half;
     y[at] = place.y + A(1, 1) * static_cast<float>(v) - A(1, 0) * Half;
     for (++at; at % kSide != 0; ++at) x[at] = x[at - 1] + A(0, 0), y[at] = y[at - 1] + A(1, 0);
   }
-  greyLevels<0>(image, kSide * kSide, x, y, grey);
+  greyLevels<0>(image, kPlaces, x, y, grey);
   return true;
 }
 

@@ -97,6 +97,7 @@ double ReducedSystem::linearise() {
 }
 
 double ReducedSystem::addOther(const Factor& factor) {
+  // NOLINTNEXTLINE(clang-analyzer-core.CallAndMessage): a factor has a cost
   const int rows = factor.cost->num_residuals();
   std::vector<const double*> blocks;
   std::vector<RowMajorMatrix> ambient;
@@ -106,6 +107,7 @@ double ReducedSystem::addOther(const Factor& factor) {
     blocks.push_back(window_.block(factor.blocks[i]));
     ambient.emplace_back(rows, factor.cost->parameter_block_sizes()[i]);
   }
+  pointers.reserve(ambient.size());
   for (RowMajorMatrix& m : ambient) pointers.push_back(m.data());
   Eigen::VectorXd r(rows);
   factor.cost->Evaluate(blocks.data(), r.data(), pointers.data());
