@@ -54,7 +54,8 @@ class Estimator::Impl {
   WindowUpdate process(const FrameTracks& tracks, const ImuBatch& imu);
   WindowUpdate finish();
   CalibrationEstimate calibration() const {
-    CalibrationEstimate estimate{window_.correctedCamera(), window_.T_b_c(), window_.correction[kTimeOffsetAt], {}};
+    CalibrationEstimate estimate{
+        window_.correctedCamera(), window_.T_b_c(), window_.correction[kTimeOffsetAt], window_.readout_s(), {}};
     if (tracking_) estimate.sigma = windowSigma(window_, params_, rig_.T_b_c).calibration;
     return estimate;
   }
@@ -160,7 +161,7 @@ void Estimator::Impl::addFrame(const FrameTracks& tracks) {
   newest_t_ns_ = tracks.t_ns;
   if (!pending_imu_.empty()) frame.gyro = pending_imu_.back().gyro;
   window_.addFrame(std::move(frame), tracks);
-  unroll(window_, rig_.line_delay_s);
+  unroll(window_);
 }
 
 void Estimator::Impl::initialise(WindowUpdate& update) {
@@ -178,7 +179,7 @@ void Estimator::Impl::initialise(WindowUpdate& update) {
   moveToAnchor();
   tracking_ = true;
   blind_frames_ = tracks_since_start_ = 0;
-  unroll(window_, rig_.line_delay_s);
+  unroll(window_);
   solve(update);
   update.status = EstimatorStatus::kTracking;
   while (static_cast<int>(window_.frames.size()) > params_.keyframes) dropOldest(update);

@@ -93,8 +93,8 @@ TrackedFlight straightFlight(const std::vector<Segment3>& lines_w, std::uint64_t
 FlownLines flown(const TrackedFlight& flight, const std::string& degenerate_lines) {
   EstimatorParams params;
   params.degeneracy.lines = degenerate_lines;
-  params.calibration.refine_camera = params.calibration.refine_extrinsics = params.calibration.refine_time_offset =
-      false;
+  params.calibration.refine_camera = params.calibration.refine_extrinsics = params.calibration.refine_readout =
+      params.calibration.refine_time_offset = false;
   Estimator estimator(flight.rig, params);
   FlownLines result;
   std::vector<Eigen::Vector3d> estimate, truth;

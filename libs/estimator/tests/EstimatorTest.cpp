@@ -75,8 +75,8 @@ TrackSimulationParams tracksFor(double duration_s, double noise_px) {
 /// The calibration of a simulated flight is perfect: what is left of the error is the estimator's.
 EstimatorParams withoutCalibration() {
   EstimatorParams params;
-  params.calibration.refine_camera = params.calibration.refine_extrinsics = params.calibration.refine_time_offset =
-      false;
+  params.calibration.refine_camera = params.calibration.refine_extrinsics = params.calibration.refine_readout =
+      params.calibration.refine_time_offset = false;
   return params;
 }
 

@@ -44,7 +44,7 @@ bool ImageFactor<Target>::Evaluate(double const* const* parameters, double* resi
   if (jacobians[1]) writePose(l, view.d_extrinsics, parameters[1], jacobians[1]);
   if (jacobians[2]) {
     Eigen::Map<Block<Target::kRows, kCorrectionSize>> J(jacobians[2]);
-    J.template leftCols<kIntrinsicsSize>() = l.d_intrinsics;
+    J.template leftCols<kSightingCorrection>() = l.d_correction;
     J.col(kTimeOffsetAt) = l.d_camera * view.d_offset;
   }
   if (jacobians[3]) writeTarget(l, parameters[3], jacobians[3]);

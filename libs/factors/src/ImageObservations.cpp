@@ -46,7 +46,7 @@ LineEnd makeLineEnd(const Camera& camera, const Eigen::Vector2d& normalised, con
   const Eigen::Matrix2d D = camera.distortJacobian(normalised), J_inverse = (F * D).inverse();
   const Eigen::Vector2d v = J_inverse.transpose() * normal, w = J_inverse * v;
   end.linearised_scale_px = 1 / v.norm();
-  for (int k = 0; k < kTimeOffsetAt; ++k) {
+  for (int k = 0; k < kIntrinsicsSize; ++k) {
     Eigen::Matrix2d dJ = F * distortJacobianChange(camera, end, k);
     if (k < 2) dJ.row(k) += D.row(k);  // fx fy
     end.log_scale_jacobian[k] = v.dot(dJ * w) / v.squaredNorm();
@@ -84,6 +84,37 @@ double wideScale_px(const Camera& camera, const Eigen::Vector3d& ray, const Eige
   return 1 / across.norm();
 }
 
+// A tracked line is the straight line that fits an edge best, as straight as the *calibrated* camera has it. Through a
+// corrected camera the edge is another curve, and the line that fits it best does not end at the same pixels: all of
+// the edge moves it. Taken at its ends alone, an observation would be biased towards the calibrated camera, more than
+// by the noise where a lens bends edges strongly. So the edge is sampled along the calibrated camera's line, and the
+// ends are those of the line that fits the samples best. Gauss-Legendre nodes: exact for bends of the fourth order.
+constexpr int kSamples = 3;
+constexpr double kNodes[kSamples] = {-0.774596669241483377, 0, 0.774596669241483377};  // of the line from -1 to 1
+constexpr double kWeights[kSamples] = {5.0 / 18, 8.0 / 18, 5.0 / 18};
+
+/// How much sample `i` moves the end at `side` (-1: start, 1: end) of the line that fits best.
+double shareOf(int i, double side) { return kWeights[i] * (1 + 3 * side * kNodes[i]); }
+
+/// Moves an end across its line, to where the fit has it, and its Jacobian with it. `across`: unit, across the line;
+/// `offset`, `offset_jacobian`: of the fit's end from the present one along `across`, per row of the ray.
+void moveEnd(LineEnd& end, const Eigen::Vector3d& across, double offset, const RayObservation::Row& offset_jacobian) {
+  end.ray += offset * across;
+  const RayObservation::Row change =
+      offset_jacobian - across.head<2>().transpose() * end.correction_jacobian - across.z() * end.z_jacobian;
+  end.correction_jacobian += across.head<2>() * change;
+  if (!end.wide) return;
+  end.z_jacobian += across.z() * change;
+  end.ray.normalize();
+}
+
+/// d (across . ray) / d correction.
+RayObservation::Row acrossJacobian(const RayObservation& o, const Eigen::Vector3d& across) {
+  RayObservation::Row J = across.head<2>().transpose() * o.correction_jacobian;
+  if (o.wide) J += across.z() * o.z_jacobian;
+  return J;
+}
+
 /// The end at `ray` of a line that ends at `other` as well.
 LineEnd wideLineEnd(const Camera& camera, const Eigen::Vector3d& ray, const Eigen::Vector3d& other) {
   constexpr double kStep = 1e-5;  // of the intrinsics, as an angle: differences of a smooth function, exact to 1e-9
@@ -108,6 +139,53 @@ LineEnd wideLineEnd(const Camera& camera, const Eigen::Vector3d& ray, const Eige
   return end;
 }
 
+/// Moves the ends to those of the line that fits the edge best. Offsets are taken in the plane that touches the sphere
+/// in the line's middle, where the front end fits.
+void fitWideEnds(const Camera& calibrated, const Camera& camera, const Eigen::Vector2d& start_px,
+                 const Eigen::Vector2d& end_px, std::pair<LineEnd, LineEnd>& ends) {
+  const Eigen::Vector3d a = calibrated.ray(start_px), b = calibrated.ray(end_px);
+  const Eigen::Vector3d middle = (a + b).normalized(), along = (b - a) / 2 / middle.dot(a);
+  const Eigen::Vector3d to = (ends.first.ray + ends.second.ray).normalized();
+  const Eigen::Vector3d across = ends.first.ray.cross(ends.second.ray).normalized();
+  RayObservation samples[kSamples];
+  for (int i = 0; i < kSamples; ++i)
+    samples[i] = wideObservation(camera, camera.ray(calibrated.project(middle + kNodes[i] * along)));
+  for (LineEnd* end : {&ends.first, &ends.second}) {
+    const double side = end == &ends.first ? -1 : 1, scale = to.dot(end->ray);
+    double offset = 0;
+    RayObservation::Row J = RayObservation::Row::Zero();
+    for (int i = 0; i < kSamples; ++i) {
+      const double share = shareOf(i, side) * scale / to.dot(samples[i].ray);
+      offset += share * across.dot(samples[i].ray);
+      J += share * acrossJacobian(samples[i], across);
+    }
+    moveEnd(*end, across, offset, J);
+  }
+}
+
+/// The same on the plane z = 1.
+void fitEnds(const Camera& calibrated, const Camera& camera, const Eigen::Vector2d& start_px,
+             const Eigen::Vector2d& end_px, const Eigen::Vector2d& normal, std::pair<LineEnd, LineEnd>& ends) {
+  const Eigen::Vector2d a = calibrated.normalise(start_px), b = calibrated.normalise(end_px);
+  const Eigen::Vector3d across(normal.x(), normal.y(), 0);
+  const double line = across.dot(ends.first.ray);
+  RayObservation samples[kSamples];
+  for (int i = 0; i < kSamples; ++i) {
+    const Eigen::Vector2d at = (a + b) / 2 + kNodes[i] * (b - a) / 2;
+    samples[i] = linearised(camera, camera.normalise(calibrated.project(at.homogeneous())));
+  }
+  for (LineEnd* end : {&ends.first, &ends.second}) {
+    double offset = -line;
+    RayObservation::Row J = RayObservation::Row::Zero();
+    for (int i = 0; i < kSamples; ++i) {
+      const double share = shareOf(i, end == &ends.first ? -1 : 1);
+      offset += share * across.dot(samples[i].ray);
+      J += share * acrossJacobian(samples[i], across);
+    }
+    moveEnd(*end, across, offset, J);
+  }
+}
+
 }  // namespace
 
 RayObservation makeObservation(const Camera& calibrated, const Eigen::Vector2d& px, const CorrectionBlock& correction) {
@@ -123,12 +201,14 @@ std::pair<LineEnd, LineEnd> makeLineEnds(const Camera& calibrated, const Eigen::
   if (camera.wide()) {
     const Eigen::Vector3d start = camera.ray(start_px), end = camera.ray(end_px);
     std::pair<LineEnd, LineEnd> ends{wideLineEnd(camera, start, end), wideLineEnd(camera, end, start)};
+    fitWideEnds(calibrated, camera, start_px, end_px, ends);
     ends.first.linearised_at = ends.second.linearised_at = correction;
     return ends;
   }
   const Eigen::Vector2d start = camera.normalise(start_px), end = camera.normalise(end_px);
   const Eigen::Vector2d along = (end - start).normalized(), normal(-along.y(), along.x());
   std::pair<LineEnd, LineEnd> ends{makeLineEnd(camera, start, normal), makeLineEnd(camera, end, normal)};
+  fitEnds(calibrated, camera, start_px, end_px, normal, ends);
   ends.first.linearised_at = ends.second.linearised_at = correction;
   return ends;
 }

@@ -27,10 +27,12 @@ void LineFactor::linearise(const CameraView& view, const double* correction, con
   out.d_camera.leftCols<3>() = d_nw * skew(d_w);
   out.d_camera.rightCols<3>() = d_l * skew(l);
   const LineEnd* seen[] = {&start_, &end_};
-  for (int k = 0; k < 2; ++k)
-    out.d_intrinsics.row(k) = seen[k]->alongJacobian(scale[k] * distances.normal) +
-                              weight_ * seen[k]->linearised_scale_px * distances.residual[k] *
-                                  seen[k]->log_scale_jacobian.leftCols<kIntrinsicsSize>();
+  for (int k = 0; k < 2; ++k) {
+    out.d_correction.row(k).head<kIntrinsicsSize>() = seen[k]->alongJacobian(scale[k] * distances.normal) +
+                                                      weight_ * seen[k]->linearised_scale_px * distances.residual[k] *
+                                                          seen[k]->log_scale_jacobian.leftCols<kIntrinsicsSize>();
+    out.d_correction(k, kReadoutAt) = 0;  // points tell the readout: Unroller moves ends of lines by it
+  }
   const Eigen::Matrix<double, 2, 3> d_dw = d_nw * skew(from_camera_w);
   // u1 and u2 turn with U: d(U e) = -U [e]x dpsi
   const Eigen::Matrix<double, 2, 3> nU = cosine * d_nw * U, dU = sine * d_dw * U;

@@ -13,7 +13,9 @@ void PointFactor::linearise(const CameraView& view, const double* correction, co
   const double w = point[3];
   const Camera camera = correctedCamera(camera_, correction);
   const Eigen::Vector3d from_camera_w = origin_w_ - view.p_w_c;
-  const Eigen::Vector3d g_c = view.R_c_w * (X + w * from_camera_w);  // scaled by w
+  Eigen::Vector3d g_c = view.R_c_w * (X + w * from_camera_w);  // scaled by w
+  if (const double delay_s = row_.delay_s(correction[kReadoutAt]); delay_s != 0)
+    g_c -= delay_s * (w * (view.R_c_w * view.d_offset.head<3>()) + view.d_offset.tail<3>().cross(g_c));
   if (!jacobians) {
     out.residual = weight_ * (camera.project(g_c) - px_);
     return;
@@ -23,7 +25,8 @@ void PointFactor::linearise(const CameraView& view, const double* correction, co
   const Eigen::Matrix<double, 2, 3> d_gw = d.point * view.R_c_w;
   out.d_camera.leftCols<3>() = -w * d_gw;
   out.d_camera.rightCols<3>() = d.point * skew(g_c);
-  out.d_intrinsics = d.intrinsics;
+  out.d_correction.leftCols<kIntrinsicsSize>() = d.intrinsics;
+  out.d_correction.col(kReadoutAt) = row_.share * (out.d_camera * view.d_offset);
   out.d_target.leftCols<3>() = d_gw;
   out.d_target.col(3) = d_gw * from_camera_w;
 }

@@ -18,7 +18,7 @@ void VanishingFactor::linearise(const CameraView& view, const double* correction
   out.d_camera << 0, 0, 0, weight_ * n.transpose() * skew(d_c);             // R_c_w <- Exp(-dtheta) R_c_w
   const Eigen::Vector3d d_cross = weight_ / norm * (d_c - n.dot(d_c) * n);  // d r / d cross
   const Eigen::Vector3d d_start = end.cross(d_cross), d_end = d_cross.cross(start);
-  out.d_intrinsics = start_.alongJacobian(d_start) + end_.alongJacobian(d_end);
+  out.d_correction << start_.alongJacobian(d_start) + end_.alongJacobian(d_end), 0;
   out.d_target = weight_ * n.transpose() * view.R_c_w;
 }
 

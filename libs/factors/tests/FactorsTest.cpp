@@ -24,7 +24,7 @@ RayObservation observation(double x, double y) {
   o.ray = {x, y, 1};
   o.correction_jacobian = 0.01 * ObservationJacobian::Ones();
   o.correction_jacobian(0, 2) = -0.02;
-  o.correction_jacobian.col(kTimeOffsetAt).setZero();
+  o.correction_jacobian.rightCols<2>().setZero();
   return o;
 }
 
@@ -32,7 +32,7 @@ LineEnd lineEnd(double x, double y, double scale_px) {
   LineEnd end;
   static_cast<RayObservation&>(end) = observation(x, y);
   end.linearised_scale_px = scale_px;
-  end.log_scale_jacobian << 0.002, 0.003, -0.001, 0.004, 0.2, 0.1, 0;
+  end.log_scale_jacobian << 0.002, 0.003, -0.001, 0.004, 0.2, 0.1, 0, 0;
   return end;
 }
 
@@ -67,16 +67,32 @@ TEST(PointFactor, TimeOffsetMovesTheCamera) {
   EXPECT_NEAR(r.y(), 0, 1e-12);
 }
 
+TEST(PointFactor, RowsOfARollingShutterHaveTheirOwnTimes) {
+  // As above, by a readout that is 200 ms longer than what the sighting was moved by: its row, a quarter after the
+  // middle one, was exposed 50 ms later.
+  const PoseBlock identity = toBlock(Pose{});
+  CorrectionBlock correction = CorrectionBlock::Zero();
+  correction[kReadoutAt] = 0.21;
+  const PointBlock point(0, 0, 2, 1);
+  const Camera camera{640, 480, 100, 100, 320, 240, 0, 0, 0, 0};
+  PointFactor factor({320, 240}, camera, {{2, 0, 0}, {0, 0, 0}}, Eigen::Vector3d::Zero(), 1, {0.25, 0.01});
+  const double* blocks[] = {identity.data(), identity.data(), correction.data(), point.data()};
+  Eigen::Vector2d r;
+  ASSERT_TRUE(factor.Evaluate(blocks, r.data(), nullptr));
+  EXPECT_NEAR(r.x(), -5, 1e-12);
+  EXPECT_NEAR(r.y(), 0, 1e-12);
+}
+
 TEST(PointFactor, GradientsFromNearToInfinity) {
   const Scene s;
   const PointManifold manifold;
-  const CorrectionBlock correction = (CorrectionBlock() << 1, -1, 0.5, 2, 0.01, -0.003, 0.004).finished();
+  const CorrectionBlock correction = (CorrectionBlock() << 1, -1, 0.5, 2, 0.01, -0.003, 0, 0.004).finished();
   const Pose T_w_c = poseFromBlock(s.T_w_bi.data()) * poseFromBlock(s.T_b_c.data());
   for (const double inverse_depth : {0.0, 0.02, 0.3, 2.0}) {
     PointBlock point;
     point << T_w_c.q * Eigen::Vector3d(0.2, -0.1, 1), inverse_depth;
     point.normalize();
-    PointFactor factor({350, 260}, eurocCamera(), kMotion, T_w_c.p + Eigen::Vector3d(0.1, 0, 0), 0.7);
+    PointFactor factor({350, 260}, eurocCamera(), kMotion, T_w_c.p + Eigen::Vector3d(0.1, 0, 0), 0.7, {0.4, 0});
     expectGradients(factor, {&kPoseManifold, &kPoseManifold, nullptr, &manifold},
                     {s.T_w_bi.data(), s.T_b_c.data(), correction.data(), point.data()});
   }
@@ -114,21 +130,21 @@ TEST(LineFactor, GradientsFromFarToNearlyThroughTheCameraAndTheOrigin) {
 
 TEST(LineFactor, IsInPixelsOfTheCorrectedCamera) {
   // The distance of the observed pixels to the image of the line, near the correction about which the ends are
-  // linearised, however large that is.
+  // linearised, however large that is; of a short line, which hardly bends between its ends.
   const Camera camera = eurocCamera();
   const PoseBlock identity = toBlock(Pose{});
   for (const Eigen::Vector2d& at : {Eigen::Vector2d(100, 60), Eigen::Vector2d(400, 250), Eigen::Vector2d(700, 420)})
     for (const double angle : {0.0, 0.7, 1.5}) {
       const Eigen::Vector2d along(std::cos(angle), std::sin(angle)), across(-along.y(), along.x());
       CorrectionBlock correction;
-      correction << 22, 8.5, 11, -4, 0.253, -0.062, 0;
+      correction << 22, 8.5, 11, -4, 0.253, -0.062, 0, 0;
       CorrectionBlock near;
-      near << 20, 10, 10, -5, 0.25, -0.06, 0;
+      near << 20, 10, 10, -5, 0.25, -0.06, 0, 0;
       const Camera corrected = correctedCamera(camera, correction.data());
       // a line through the image of two points, seen 2 px beside it
       const auto ray = [&](const Eigen::Vector2d& px) { return corrected.normalise(px).homogeneous().eval(); };
-      const LineBlock line = toBlock(toOrthonormal(lineThrough(ray(at - 20 * along), ray(at + 20 * along))));
-      const auto [start, end] = makeLineEnds(camera, at - 20 * along + 2 * across, at + 20 * along + 2 * across, near);
+      const LineBlock line = toBlock(toOrthonormal(lineThrough(ray(at - 4 * along), ray(at + 4 * along))));
+      const auto [start, end] = makeLineEnds(camera, at - 4 * along + 2 * across, at + 4 * along + 2 * across, near);
       const double* blocks[] = {identity.data(), identity.data(), correction.data(), line.data()};
       Eigen::Vector2d r;
       ASSERT_TRUE(LineFactor(start, end, {}, Eigen::Vector3d::Zero(), 0.5).Evaluate(blocks, r.data(), nullptr));
@@ -137,11 +153,46 @@ TEST(LineFactor, IsInPixelsOfTheCorrectedCamera) {
     }
 }
 
+TEST(LineEnd, BelongsToTheLineThatFitsTheWholeEdge) {
+  // The front end fits a straight line of the calibrated camera to an edge; through the true camera the edge is the
+  // straight one. The ends under the true correction lie on it, to what the fit leaves of the bend, and not where the
+  // pixels of the fit's ends are.
+  const Camera truth = eurocCamera();
+  Camera calibrated = truth;
+  calibrated.lens[0] *= 1.1;
+  CorrectionBlock correction = CorrectionBlock::Zero();
+  correction[4] = truth.lens[0] - calibrated.lens[0];
+  const Eigen::Vector2d from = truth.normalise({120, 40}), to = truth.normalise({640, 70});
+  const int n = 200;
+  Eigen::MatrixXd A(n, 2);
+  Eigen::VectorXd y(n), x(n);
+  for (int i = 0; i < n; ++i) {
+    const Eigen::Vector2d edge = from + (i + 0.5) / n * (to - from);
+    const Eigen::Vector2d seen = calibrated.normalise(truth.project(edge.homogeneous()));
+    A.row(i) << 1, seen.x();
+    x[i] = seen.x();
+    y[i] = seen.y();
+  }
+  const Eigen::Vector2d line = A.colPivHouseholderQr().solve(y);
+  const auto pixel = [&](double at) { return calibrated.project(Eigen::Vector3d(at, line[0] + line[1] * at, 1)); };
+  const Eigen::Vector2d start_px = pixel(x[0]), end_px = pixel(x[n - 1]);
+  const auto [start, end] = makeLineEnds(calibrated, start_px, end_px, correction);
+  const Eigen::Vector2d along = (to - from).normalized(), across(-along.y(), along.x());
+  const auto error_px = [&](const Eigen::Vector2d& at) { return truth.fx * std::abs(across.dot(at - from)); };
+  EXPECT_GT(error_px(truth.normalise(start_px)), 1) << "the fit's own end";
+  EXPECT_LT(error_px(start.ray.head<2>()), 0.1);
+  EXPECT_LT(error_px(end.ray.head<2>()), 0.1);
+  // and to first order, about no correction
+  const auto [linear_start, linear_end] = makeLineEnds(calibrated, start_px, end_px);
+  EXPECT_LT(error_px(linear_start.corrected(correction.data()).head<2>()), 0.5);
+  EXPECT_LT(error_px(linear_end.corrected(correction.data()).head<2>()), 0.5);
+}
+
 TEST(LineEnd, ScaleFollowsTheCorrection) {
   const Camera camera = eurocCamera();
   const Eigen::Vector2d start_px(80, 50), end_px(180, 130);
   const LineEnd end = makeLineEnds(camera, start_px, end_px).first;
-  for (int k = 0; k < kTimeOffsetAt; ++k) {
+  for (int k = 0; k < kIntrinsicsSize; ++k) {
     const double step = k < 4 ? 0.1 : 1e-3;
     const auto scale = [&](double by) {
       CorrectionBlock correction = CorrectionBlock::Zero();

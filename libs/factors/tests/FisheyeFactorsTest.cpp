@@ -26,7 +26,7 @@ const Eigen::Vector2d kFisheyePixels[] = {{380, 250}, {80, 60}, {740, 240}, {5, 
 TEST(PointFactor, GradientsThroughFisheyes) {
   const Scene s;
   const PointManifold manifold;
-  const CorrectionBlock correction = (CorrectionBlock() << 1, -1, 0.5, 2, 0.01, -0.003, 0.004).finished();
+  const CorrectionBlock correction = (CorrectionBlock() << 1, -1, 0.5, 2, 0.01, -0.003, 0, 0.004).finished();
   const Pose T_w_c = poseFromBlock(s.T_w_bi.data()) * poseFromBlock(s.T_b_c.data());
   for (const LensModel model : {LensModel::kEquidistant, LensModel::kDoubleSphere, LensModel::kExtendedUnified})
     for (const Eigen::Vector2d& px : kFisheyePixels) {
@@ -76,8 +76,8 @@ TEST(LineFactor, IsInPixelsOfTheCorrectedFisheye) {
     for (const double angle : {0.0, 0.7, 1.5}) {
       const Eigen::Vector2d along(std::cos(angle), std::sin(angle)), across(-along.y(), along.x());
       CorrectionBlock correction, near;
-      correction << 6.5, 4.5, 4, -2, 0.013, -0.006, 0;
-      near << 6, 5, 3.5, -2.5, 0.012, -0.006, 0;
+      correction << 6.5, 4.5, 4, -2, 0.013, -0.006, 0, 0;
+      near << 6, 5, 3.5, -2.5, 0.012, -0.006, 0, 0;
       const Camera corrected = correctedCamera(camera, correction.data());
       const Eigen::Vector2d from = at - 3 * along, to = at + 3 * along;  // short: nearly straight in the image
       const LineBlock line = toBlock(toOrthonormal(lineThrough(corrected.ray(from), corrected.ray(to))));

@@ -39,7 +39,13 @@ struct Scene {
   PoseBlock T_w_bi = toBlock(Pose{expRotation({0.1, -0.2, 0.3}), {0.5, 0.2, -0.1}});
   PoseBlock T_w_bj = toBlock(Pose{expRotation({0.15, -0.1, 0.4}), {0.9, 0.3, 0.1}});
   PoseBlock T_b_c = toBlock(Pose{expRotation({0.02, 0.01, 1.55}), {-0.02, -0.06, 0.01}});
-  CorrectionBlock correction = 0.01 * CorrectionBlock::Ones();
+  CorrectionBlock correction = withReadout(0);  // the first order in it is exact there
+
+  static CorrectionBlock withReadout(double readout_s) {
+    CorrectionBlock c = 0.01 * CorrectionBlock::Ones();
+    c[kReadoutAt] = readout_s;
+    return c;
+  }
 };
 
 inline const FrameMotion kMotion{{0.5, -0.3, 0.8}, {0.3, -0.6, 0.2}};

@@ -27,7 +27,7 @@ StateManifold* directionManifold() {
 CorrectionBlock correctionOf(const Camera& camera, const Camera& calibrated, double time_offset_s) {
   CorrectionBlock c;
   c << camera.fx - calibrated.fx, camera.fy - calibrated.fy, camera.cx - calibrated.cx, camera.cy - calibrated.cy,
-      camera.lens[0] - calibrated.lens[0], camera.lens[1] - calibrated.lens[1], time_offset_s;
+      camera.lens[0] - calibrated.lens[0], camera.lens[1] - calibrated.lens[1], 0, time_offset_s;
   return c;
 }
 

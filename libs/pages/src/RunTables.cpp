@@ -56,6 +56,8 @@ Table calibrationTable(const RunRecord& record, const OdometryResult& result) {
              kDegrees * sigma.R_b_c_rad[axis], kDegrees * batch_rad[axis], 3);
   rows.add("time offset [ms]", 0, 1000 * last.time_offset_s, 1000 * sigma.time_offset_s, 1000 * result.time_offset_s,
            3);
+  rows.add("readout of an image [ms]", 1000 * record.calibration.readout_s(), 1000 * last.readout_s,
+           1000 * sigma.readout_s, 1000 * result.rig.readout_s(), 3);
   return rows.table();
 }
 

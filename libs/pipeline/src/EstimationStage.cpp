@@ -41,6 +41,7 @@ void EstimationStage::finish(const RefinementProgress& loops_progress, const Ref
   result_.rig = rig_;
   result_.rig.camera = calibration.camera;
   result_.rig.T_b_c = calibration.T_b_c;
+  result_.rig.line_delay_s = calibration.readout_s / rig_.camera.height;
   result_.time_offset_s = calibration.time_offset_s;
   map_.add(estimator_.finish());
   map_.setCalibration(result_.rig, result_.time_offset_s);

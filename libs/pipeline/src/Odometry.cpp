@@ -12,6 +12,7 @@
 
 #include "ClockSearch.h"
 #include "EstimationStage.h"
+#include "ReadoutRemark.h"
 #include "RunCheck.h"
 #include "TrackingStage.h"
 #include "lintel/core/BoundedQueue.h"
@@ -142,6 +143,8 @@ OdometryResult runOdometry(Recording& recording, const Configuration& configurat
   addClock(search, result);
   if (const std::string noise = check.noiseRemark(); !noise.empty())
     result.remarks.push_back("noise of the IMU: " + noise);
+  if (const std::string readout = readoutRemark(recording.rig(), result.window_calibration); !readout.empty())
+    result.remarks.push_back(readout);
   result.evidence = check.evidence();
   result.verdict = check.verdict(result.statistics, result.rig);
   return result;

@@ -99,28 +99,30 @@ Json refinementJson(const OdometryResult& result) {
           {"turned_rad", r.turned_rad}};
 }
 
-Json cameraJson(const Camera& c, const Pose& T_b_c, double time_offset_s) {
+Json cameraJson(const Camera& c, const Pose& T_b_c, double time_offset_s, double readout_s) {
   return {{"intrinsics_px", {c.fx, c.fy, c.cx, c.cy}},
           {"lens", lensName(c.model).name},
           {"distortion", lensCoefficients(c)},
           {"p_b_c_m", {T_b_c.p.x(), T_b_c.p.y(), T_b_c.p.z()}},
           {"q_b_c_xyzw", {T_b_c.q.x(), T_b_c.q.y(), T_b_c.q.z(), T_b_c.q.w()}},
-          {"time_offset_s", time_offset_s}};
+          {"time_offset_s", time_offset_s},
+          {"readout_s", readout_s}};
 }
 
 /// The final calibration; beside it what was given, and what the last window made of it, with its sigmas.
 Json calibrationJson(const OdometryResult& result, const Rig& given) {
-  Json json = cameraJson(result.rig.camera, result.rig.T_b_c, result.time_offset_s);
-  json["given"] = cameraJson(given.camera, given.T_b_c, 0);
+  Json json = cameraJson(result.rig.camera, result.rig.T_b_c, result.time_offset_s, result.rig.readout_s());
+  json["given"] = cameraJson(given.camera, given.T_b_c, 0, given.readout_s());
   const CalibrationEstimate& last = result.window_calibration;
   if (!last.sigma) return json;
   const CalibrationSigma& s = *last.sigma;
-  json["window"] = cameraJson(last.camera, last.T_b_c, last.time_offset_s);
+  json["window"] = cameraJson(last.camera, last.T_b_c, last.time_offset_s, last.readout_s);
   json["window"]["sigma"] = {{"intrinsics_px", {s.camera[0], s.camera[1], s.camera[2], s.camera[3]}},
                              {"distortion", {s.camera[4], s.camera[5]}},
                              {"p_b_c_m", {s.p_b_c_m.x(), s.p_b_c_m.y(), s.p_b_c_m.z()}},
                              {"R_b_c_rad", {s.R_b_c_rad.x(), s.R_b_c_rad.y(), s.R_b_c_rad.z()}},
-                             {"time_offset_s", s.time_offset_s}};
+                             {"time_offset_s", s.time_offset_s},
+                             {"readout_s", s.readout_s}};
   return json;
 }
 

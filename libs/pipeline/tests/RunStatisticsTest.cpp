@@ -17,6 +17,7 @@ TEST(StatisticsJson, SaysWhatTheRunCounted) {
   result.map.lines.resize(3);
   result.rig.camera.fx = 458.5;
   result.time_offset_s = 0.002;
+  result.window_calibration.readout_s = 0.02;
   result.error = "cut off";
   result.lines_beside = 2;
   result.statistics.blind = {{3.5, 6}};
@@ -41,6 +42,7 @@ TEST(StatisticsJson, SaysWhatTheRunCounted) {
   EXPECT_EQ(json["map_lines_beside"], 2);
   EXPECT_EQ(json["calibration"]["intrinsics_px"][0], 458.5);
   EXPECT_EQ(json["calibration"]["time_offset_s"], 0.002);
+  EXPECT_EQ(json["calibration"]["window"]["readout_s"], 0.02);
   EXPECT_EQ(json["calibration"]["given"]["intrinsics_px"][0], 457);
   EXPECT_EQ(json["calibration"]["window"]["intrinsics_px"][0], 458.4);
   EXPECT_EQ(json["calibration"]["window"]["sigma"]["intrinsics_px"][0], 0.25);

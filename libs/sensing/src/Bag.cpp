@@ -107,7 +107,9 @@ std::vector<std::string> filesOf(const std::string& folder) {
 
 double BagTopic::rate_hz() const {
   if (count < 2 || last_ns <= first_ns) return 0;
-  return std::round(1e10 * static_cast<double>(count - 1) / static_cast<double>(last_ns - first_ns)) / 10;
+  // a bag may say anything of its times: their difference need not be a number of 64 bits
+  const double duration_ns = static_cast<double>(last_ns) - static_cast<double>(first_ns);
+  return std::round(1e10 * static_cast<double>(count - 1) / duration_ns) / 10;
 }
 
 std::string ros1Type(const std::string& type) {

@@ -196,7 +196,7 @@ bool Initializer::adjust(SlidingWindow& window) const {
   setBiasPrior(window, MotionBlock::Zero(), params_.initializer.bias_gyro_sigma,
                std::numeric_limits<double>::infinity());
   CalibrationParams frozen = params_.calibration;
-  frozen.refine_extrinsics = frozen.refine_camera = false;
+  frozen.refine_extrinsics = frozen.refine_camera = frozen.refine_readout = false;
   // an offset that is known from a search alone, to some milliseconds, would be taken for a bias
   frozen.refine_time_offset &= frozen.time_offset_sigma_s > kKnownOffset_s;
   LandmarkParams loose = params_.landmarks;
@@ -253,7 +253,7 @@ double Initializer::relativeScaleSigma(SlidingWindow& window) const {
   factors.addGauge();
   CalibrationParams frozen = params_.calibration;
   frozen.extrinsic_rotation_sigma_rad = frozen.extrinsic_translation_sigma_m = 1e-6;
-  frozen.refine_camera = frozen.refine_time_offset = false;
+  frozen.refine_camera = frozen.refine_readout = frozen.refine_time_offset = false;
   factors.addCalibrationPriors(frozen, T_b_c_calibrated_);
   ReducedSystem system(window, factors.factors(), {}, {});
   system.linearise();

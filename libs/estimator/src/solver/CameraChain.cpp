@@ -33,11 +33,11 @@ CameraChain::CameraChain(const CameraLayout& layout, const std::vector<CameraVie
   if (places.extrinsics >= 0) tail_.push_back({0, kPoseTangent, places.extrinsics});
   if (places.correction >= 0) {
     tail_.push_back({kPoseTangent, 1, places.correction + kTimeOffsetAt});
-    tail_.push_back({kShared, kIntrinsicsSize, places.correction});
+    tail_.push_back({kShared, kSightingCorrection, places.correction});
   }
   for (std::size_t i = 0; i < places.kept.size(); ++i) {
     const Eigen::Index at = layout.kept_offsets[i], size = layout.kept_offsets[i + 1] - at;
-    if (places.kept[i] >= 0) tail_.push_back({kShared + kIntrinsicsSize + at, size, places.kept[i]});
+    if (places.kept[i] >= 0) tail_.push_back({kShared + kSightingCorrection + at, size, places.kept[i]});
   }
 }
 
@@ -58,7 +58,7 @@ void CameraChain::addPoses(const CameraEquations& cameras, Eigen::MatrixXd& H) c
 }
 
 void CameraChain::addTail(const CameraEquations& cameras, Eigen::MatrixXd& H) const {
-  const Eigen::Index rest = layout_.intrinsics(), n = layout_.size() - rest;
+  const Eigen::Index rest = layout_.correction(), n = layout_.size() - rest;
   Eigen::MatrixXd square = Eigen::MatrixXd::Zero(tailSize(), tailSize()), by_pose(tailSize(), kPoseTangent);
   square.bottomRightCorner(n, n) = cameras.H.bottomRightCorner(n, n);
   for (int k = 0; k < layout_.cameras; ++k) {
@@ -85,7 +85,7 @@ void CameraChain::addTail(const CameraEquations& cameras, Eigen::MatrixXd& H) co
 void CameraChain::addGradient(const Eigen::VectorXd& b_cameras, Eigen::VectorXd& b) const {
   Eigen::VectorXd tail(tailSize());
   tail.head<kShared>().setZero();
-  tail.tail(layout_.size() - layout_.intrinsics()) = b_cameras.tail(layout_.size() - layout_.intrinsics());
+  tail.tail(layout_.size() - layout_.correction()) = b_cameras.tail(layout_.size() - layout_.correction());
   for (int k = 0; k < layout_.cameras; ++k) {
     const auto place = static_cast<std::size_t>(k);
     const Eigen::Matrix<double, kCameraTangent, 1> own = b_cameras.segment<kCameraTangent>(layout_.camera(k));
@@ -104,7 +104,7 @@ Eigen::VectorXd CameraChain::cameraStep(const Eigen::VectorXd& step) const {
     if (poses_[place] >= 0) own += views_[place].d_pose * step.segment<kPoseTangent>(poses_[place]);
     result.segment<kCameraTangent>(layout_.camera(k)) = own;
   }
-  result.tail(layout_.size() - layout_.intrinsics()) = tail.tail(layout_.size() - layout_.intrinsics());
+  result.tail(layout_.size() - layout_.correction()) = tail.tail(layout_.size() - layout_.correction());
   return result;
 }
 

@@ -16,8 +16,8 @@ struct StatePlaces {
 };
 
 /// The chain rule between the cameras' tangent spaces and the states: a camera hangs on its frame's pose, on the
-/// extrinsics and on the time offset; intrinsics and kept targets are states themselves. All equations: lower
-/// triangles.
+/// extrinsics and on the time offset; the rest of the correction and kept targets are states themselves. All equations:
+/// lower triangles.
 class CameraChain {
  public:
   /// `layout` and `views` must outlive the chain.
@@ -27,21 +27,22 @@ class CameraChain {
   void add(const CameraEquations& cameras, Eigen::MatrixXd& H, Eigen::VectorXd& b) const;
   void addGradient(const Eigen::VectorXd& b_cameras, Eigen::VectorXd& b) const;
 
-  /// How a step of the states moves cameras, intrinsics and kept targets.
+  /// How a step of the states moves cameras, correction and kept targets.
   Eigen::VectorXd cameraStep(const Eigen::VectorXd& step) const;
 
  private:
   static constexpr int kShared = kPoseTangent + 1;
   using SharedJacobian = Eigen::Matrix<double, kCameraTangent, kShared>;
 
-  /// A stretch of the tail (extrinsics, time offset, intrinsics, kept targets) and its place among the states.
+  /// A stretch of the tail (extrinsics, time offset, rest of the correction, kept targets) and its place among the
+  /// states.
   struct Piece {
     Eigen::Index at, size, state;
   };
 
   void addPoses(const CameraEquations& cameras, Eigen::MatrixXd& H) const;
   void addTail(const CameraEquations& cameras, Eigen::MatrixXd& H) const;
-  Eigen::Index tailSize() const { return kShared + layout_.size() - layout_.intrinsics(); }
+  Eigen::Index tailSize() const { return kShared + layout_.size() - layout_.correction(); }
 
   const CameraLayout& layout_;
   const std::vector<CameraView>& views_;

@@ -12,7 +12,8 @@
 
 namespace lintel {
 
-/// Normal equations over cameras (6 each, in the order of the window's frames), intrinsics (6), kept targets.
+/// Normal equations over cameras (6 each, in the order of the window's frames), correction without
+/// the time offset (7), kept targets.
 struct CameraEquations {
   Eigen::MatrixXd H;
   Eigen::VectorXd b;
@@ -27,9 +28,9 @@ struct CameraLayout {
   std::vector<Eigen::Index> kept_offsets{0};  ///< one more entry for the end
 
   Eigen::Index camera(int k) const { return kCameraTangent * k; }
-  Eigen::Index intrinsics() const { return kCameraTangent * cameras; }
+  Eigen::Index correction() const { return kCameraTangent * cameras; }
   Eigen::Index target(int k) const {
-    return intrinsics() + kIntrinsicsSize + kept_offsets[static_cast<std::size_t>(k)];
+    return correction() + kSightingCorrection + kept_offsets[static_cast<std::size_t>(k)];
   }
   Eigen::Index size() const { return target(static_cast<int>(kept.size())); }
   const double* block(int k) const { return kept_blocks[static_cast<std::size_t>(k)]; }

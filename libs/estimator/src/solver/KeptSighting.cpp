@@ -15,7 +15,7 @@ double KeptSighting<Target>::cost(const std::vector<CameraView>& views, const do
 template <class Target>
 double KeptSighting<Target>::linearise(const std::vector<CameraView>& views, const double* correction,
                                        const CameraLayout& layout, CameraEquations& eq) const {
-  constexpr int T = Target::kTangent, kTargetAt = kCameraTangent + kIntrinsicsSize, N = kTargetAt + T;
+  constexpr int T = Target::kTangent, kTargetAt = kCameraTangent + kSightingCorrection, N = kTargetAt + T;
   ImageLinearisation<Target> l;
   factor->linearise(views[static_cast<std::size_t>(camera)], correction, layout.block(target), true, l);
   double weight;
@@ -23,7 +23,7 @@ double KeptSighting<Target>::linearise(const std::vector<CameraView>& views, con
 
   Eigen::Matrix<double, Target::kRows, N> J;
   J.template leftCols<kCameraTangent>() = l.d_camera;
-  J.template middleCols<kIntrinsicsSize>(kCameraTangent) = l.d_intrinsics;
+  J.template middleCols<kSightingCorrection>(kCameraTangent) = l.d_correction;
   if constexpr (Target::kColumns == T) {
     J.template rightCols<T>() = l.d_target;
   } else {
@@ -35,8 +35,8 @@ double KeptSighting<Target>::linearise(const std::vector<CameraView>& views, con
   const Eigen::Matrix<double, N, Target::kRows> weighted = weight * J.transpose();
   const Eigen::Matrix<double, N, N> H = weighted.lazyProduct(J);
   const Eigen::Matrix<double, N, 1> b = J.transpose().lazyProduct(weight * l.residual);
-  const Eigen::Index from[] = {0, kCameraTangent, kTargetAt}, sizes[] = {kCameraTangent, kIntrinsicsSize, T},
-                     to[] = {layout.camera(camera), layout.intrinsics(), layout.target(target)};
+  const Eigen::Index from[] = {0, kCameraTangent, kTargetAt}, sizes[] = {kCameraTangent, kSightingCorrection, T},
+                     to[] = {layout.camera(camera), layout.correction(), layout.target(target)};
   for (int i = 0; i < 3; ++i) {
     eq.b.segment(to[i], sizes[i]) += b.segment(from[i], sizes[i]);
     for (int j = 0; j <= i; ++j)

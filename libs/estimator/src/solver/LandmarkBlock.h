@@ -34,7 +34,7 @@ struct LandmarkBlock {
   Eigen::Matrix<double, T, T> H, inverse_root;
   Eigen::Matrix<double, T, 1> b, step;
   Eigen::Matrix<double, Eigen::Dynamic, T> W, Y;  ///< the landmark's columns of H, in the rows of its cameras, of the
-                                                  ///< intrinsics and of its direction; the same times inverse_root
+                                                  ///< correction and of its direction; the same times inverse_root
   std::vector<RowRun> runs;                       ///< where these rows lie in CameraEquations
 
   /// The landmark's robust cost at the blocks' present values.
@@ -56,7 +56,7 @@ struct LandmarkBlock {
     return track_loss.cost(squared, Target::kRows * static_cast<int>(sightings.size()), T, weight);
   }
   void placeRows(const CameraLayout& layout);
-  Eigen::Index intrinsicsRow() const { return kCameraTangent * static_cast<Eigen::Index>(sightings.size()); }
+  Eigen::Index correctionRow() const { return kCameraTangent * static_cast<Eigen::Index>(sightings.size()); }
   void addSighting(std::size_t i, double track_weight, const RowMajorMatrix& plus, const CameraLayout& layout,
                    CameraEquations& eq);
   double addTie(const CameraLayout& layout, CameraEquations& eq);

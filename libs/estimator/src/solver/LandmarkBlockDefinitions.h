@@ -68,7 +68,7 @@ void LandmarkBlock<Target>::placeRows(const CameraLayout& layout) {
     rows += size;
   };
   for (const Sighting& s : sightings) place(layout.camera(s.camera), kCameraTangent);
-  place(layout.intrinsics(), kIntrinsicsSize);
+  place(layout.correction(), kSightingCorrection);
   if (tie) place(layout.target(direction), kDirectionTangent);
   W.resize(rows, T);
 }
@@ -79,7 +79,7 @@ double LandmarkBlock<Target>::linearise(const std::vector<CameraView>& views, co
   H.setZero();
   b.setZero();
   placeRows(layout);
-  W.template middleRows<kIntrinsicsSize>(intrinsicsRow()).setZero();
+  W.template middleRows<kSightingCorrection>(correctionRow()).setZero();
   RowMajorMatrix plus(Target::kSize, T);
   manifoldOf(kKindOf<Target>)->PlusJacobian(block, plus.data());
   double sum = 0, weight;
@@ -103,18 +103,18 @@ void LandmarkBlock<Target>::addSighting(std::size_t i, double track_weight, cons
   const double root = std::sqrt(weight * track_weight);
   const Eigen::Matrix<double, Target::kRows, T> J = root * landmark_block::tangentJacobian(l, plus);
   const Eigen::Matrix<double, Target::kRows, kCameraTangent> Jc = root * l.d_camera;
-  const Eigen::Matrix<double, Target::kRows, kIntrinsicsSize> Ji = root * l.d_intrinsics;
+  const Eigen::Matrix<double, Target::kRows, kSightingCorrection> Ji = root * l.d_correction;
   const Eigen::Matrix<double, Target::kRows, 1> r = root * l.residual;
   H.noalias() += J.transpose() * J;
   b.noalias() += J.transpose() * r;
-  W.template middleRows<kIntrinsicsSize>(intrinsicsRow()).noalias() += Ji.transpose() * J;
+  W.template middleRows<kSightingCorrection>(correctionRow()).noalias() += Ji.transpose() * J;
   W.template middleRows<kCameraTangent>(kCameraTangent * static_cast<Eigen::Index>(i)).noalias() = Jc.transpose() * J;
-  const Eigen::Index at = layout.camera(sighting.camera), intrinsics = layout.intrinsics();
+  const Eigen::Index at = layout.camera(sighting.camera), correction = layout.correction();
   eq.H.block<kCameraTangent, kCameraTangent>(at, at).noalias() += Jc.transpose() * Jc;
-  eq.H.block<kIntrinsicsSize, kCameraTangent>(intrinsics, at).noalias() += Ji.transpose() * Jc;
-  eq.H.block<kIntrinsicsSize, kIntrinsicsSize>(intrinsics, intrinsics).noalias() += Ji.transpose() * Ji;
+  eq.H.block<kSightingCorrection, kCameraTangent>(correction, at).noalias() += Ji.transpose() * Jc;
+  eq.H.block<kSightingCorrection, kSightingCorrection>(correction, correction).noalias() += Ji.transpose() * Ji;
   eq.b.segment<kCameraTangent>(at).noalias() += Jc.transpose() * r;
-  eq.b.segment<kIntrinsicsSize>(intrinsics).noalias() += Ji.transpose() * r;
+  eq.b.segment<kSightingCorrection>(correction).noalias() += Ji.transpose() * r;
 }
 
 template <class Target>

@@ -30,7 +30,7 @@ struct NormalEquations {
 /// for those that stay among the states (LandmarkSystem says which).
 ///
 /// The residuals of an image share its camera. They are summed in the tangent spaces of the cameras (six numbers each,
-/// plus the intrinsics and the targets that stay), landmarks are eliminated there, and one chain rule for each camera
+/// plus the correction and the targets that stay), landmarks are eliminated there, and one chain rule for each camera
 /// carries the sum over to poses, extrinsics and time offset. Robust losses count as weights.
 class ReducedSystem {
  public:

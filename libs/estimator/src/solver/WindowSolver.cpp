@@ -21,7 +21,8 @@ SolveSummary solveWindow(SlidingWindow& window, const std::vector<Factor>& facto
                          const CalibrationParams& calibration, const SolveLimits& limits) {
   std::set<BlockKey> frozen;
   if (!calibration.refine_extrinsics) frozen.insert({BlockKey::kExtrinsics, 0});
-  if (!calibration.refine_camera && !calibration.refine_time_offset) frozen.insert({BlockKey::kCorrection, 0});
+  if (!calibration.refine_camera && !calibration.refine_readout && !calibration.refine_time_offset)
+    frozen.insert({BlockKey::kCorrection, 0});
   ReducedSystem system(window, factors, {}, frozen);
 
   SolveSummary summary;

@@ -2,6 +2,7 @@
 #include "window/RollingShutter.h"
 
 #include <algorithm>
+#include <cmath>
 #include <map>
 #include <tuple>
 
@@ -12,7 +13,8 @@
 namespace lintel {
 namespace {
 
-constexpr double kSame_px = 0.01;  ///< a sighting that moves by less is left as it is: far below its noise
+constexpr double kShort_s = 0.001;  ///< the residuals' first order is enough for shorter ones
+constexpr double kSame_px = 0.01;   ///< a sighting that moves by less is left as it is: far below its noise
 
 /// The camera during one image.
 struct MovingCamera {
@@ -22,8 +24,7 @@ struct MovingCamera {
 
 class Unroller {
  public:
-  Unroller(SlidingWindow& window, double line_delay_s)
-      : window_(window), camera_(window.correctedCamera()), line_delay_s_(line_delay_s) {
+  explicit Unroller(SlidingWindow& window) : window_(window), camera_(window.correctedCamera()) {
     const Pose T_b_c = window.T_b_c();
     for (const WindowFrame& frame : window.frames) {
       const FrameMotion motion = frame.bodyMotion();
@@ -87,7 +88,8 @@ class Unroller {
   }
 
   Eigen::Vector2d moved(const MovingCamera& camera, const Eigen::Vector2d& seen_px, double inverse_distance) const {
-    const double dt_s = (seen_px.y() - 0.5 * (camera_.height - 1)) * line_delay_s_;
+    const double dt_s = window_.shareOfReadout(seen_px) * window_.unrolled_s;
+    if (dt_s == 0) return seen_px;
     const Eigen::Vector3d ray =
         expRotation(camera.omega_c * dt_s) * camera_.ray(seen_px).normalized() + camera.v_c * dt_s * inverse_distance;
     return camera_.projects(ray) ? camera_.project(ray) : seen_px;
@@ -95,16 +97,17 @@ class Unroller {
 
   SlidingWindow& window_;
   Camera camera_;
-  double line_delay_s_;
   std::map<FrameId, MovingCamera> cameras_;
   double usual_inverse_distance_ = 0;
 };
 
 }  // namespace
 
-void unroll(SlidingWindow& window, double line_delay_s) {
-  if (line_delay_s == 0 || window.frames.empty()) return;
-  Unroller unroller(window, line_delay_s);
+void unroll(SlidingWindow& window) {
+  const double former_s = window.unrolled_s, readout_s = window.readout_s();
+  window.unrolled_s = std::abs(readout_s) > kShort_s ? readout_s : 0;
+  if ((window.unrolled_s == 0 && former_s == 0) || window.frames.empty()) return;
+  Unroller unroller(window);
   unroller.points();
   unroller.lines();
 }

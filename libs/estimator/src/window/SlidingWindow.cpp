@@ -8,7 +8,8 @@
 
 namespace lintel {
 
-SlidingWindow::SlidingWindow(const Rig& rig) : extrinsics(toBlock(rig.T_b_c)), camera_(rig.camera) {}
+SlidingWindow::SlidingWindow(const Rig& rig)
+    : extrinsics(toBlock(rig.T_b_c)), camera_(rig.camera), given_readout_s_(rig.readout_s()) {}
 
 Camera SlidingWindow::correctedCamera() const { return lintel::correctedCamera(camera_, correction.data()); }
 
@@ -62,7 +63,8 @@ void SlidingWindow::addFrame(WindowFrame frame, const FrameTracks& tracks) {
 void SlidingWindow::relinearise() {
   CorrectionBlock small;  // what the observations are linear within, to 0.05 px in the corners of EuRoC's images
   const double px = 0.0005 * camera_.meanFocal(), distortion = 0.00075;
-  small << px, px, px, px, distortion, distortion, std::numeric_limits<double>::infinity();
+  constexpr double kAny = std::numeric_limits<double>::infinity();
+  small << px, px, px, px, distortion, distortion, kAny, kAny;
   if (((correction - linearised_at_).cwiseAbs().array() <= small.array()).all()) return;
   linearised_at_ = correction;
   const auto renewPoint = [&](PointSighting& s) { s.observation = makeObservation(camera_, s.px, linearised_at_); };

@@ -60,6 +60,7 @@ PriorParts makeCorrectionPriors(const CalibrationParams& p) {
   parts.push_back(makePart(manifold, zero, 0, 2, p.refine_camera, p.focal_sigma_px));
   parts.push_back(makePart(manifold, zero, 2, 2, p.refine_camera, p.centre_sigma_px));
   parts.push_back(makePart(manifold, zero, 4, 2, p.refine_camera, p.distortion_sigma));
+  parts.push_back(makePart(manifold, zero, kReadoutAt, 1, p.refine_readout, p.readout_sigma_s));
   parts.push_back(makePart(manifold, zero, kTimeOffsetAt, 1, p.refine_time_offset, p.time_offset_sigma_s));
   return parts;
 }

@@ -79,7 +79,8 @@ void WindowFactors::addPoints() {
 void WindowFactors::addPoint(const PointTrack& track) {
   if (track.sightings.size() < 2) return;  // one sighting says nothing about the cameras
   for (const PointSighting& s : track.sightings) {
-    point_factors_.emplace_back(s.px, window_.camera(), motionOf(s.frame), track.origin_w, params_.point_sigma_px);
+    point_factors_.emplace_back(s.px, window_.camera(), motionOf(s.frame), track.origin_w, params_.point_sigma_px,
+                                window_.rowTime(s.seen_px));
     factors_.push_back({&point_factors_.back(),
                         &point_loss_,
                         {{BlockKey::kPose, s.frame},

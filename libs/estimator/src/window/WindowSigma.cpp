@@ -35,6 +35,7 @@ WindowSigma windowSigma(const SlidingWindow& window, const EstimatorParams& para
   const Eigen::VectorXd correction = marginals.sigmas({BlockKey::kCorrection, 0});
   if (correction.size() != kCorrectionSize) return sigma;
   if (params.calibration.refine_camera) sigma.calibration.camera = correction.head<6>();
+  if (params.calibration.refine_readout) sigma.calibration.readout_s = correction[kReadoutAt];
   if (params.calibration.refine_time_offset) sigma.calibration.time_offset_s = correction[kTimeOffsetAt];
   return sigma;
 }

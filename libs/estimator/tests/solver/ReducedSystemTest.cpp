@@ -28,7 +28,7 @@ class ReducedSystemTest : public testing::Test {
     triangulateLines(window_, kParams);
     for (std::size_t k = 0; k < window_.frames.size(); ++k)
       window_.frames[k].pose.head<3>() += 0.002 * Eigen::Vector3d(1, -1, static_cast<double>(k));
-    window_.correction << 0.3, -0.2, 0.1, 0.4, 1e-3, -1e-3, 1e-3;
+    window_.correction << 0.3, -0.2, 0.1, 0.4, 1e-3, -1e-3, 0, 1e-3;
     window_.directions[3].d_w = DirectionBlock(0.1, 0.2, 1).normalized();
     factors_ = std::make_unique<WindowFactors>(window_, kParams.factors);
     factors_->addImu();

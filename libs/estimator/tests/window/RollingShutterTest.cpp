@@ -23,6 +23,7 @@ class RollingShutterTest : public testing::Test {
 
   static Rig rig() {
     Rig rig = test::plainRig();
+    rig.line_delay_s = kLineDelay_s;
     rig.T_b_c = {expRotation({0.02, 1.5, -0.3}), {0.05, -0.02, 0.1}};
     return rig;
   }
@@ -58,7 +59,7 @@ TEST_F(RollingShutterTest, PointsComeToWhereTheMiddleRowsTimeHasThem) {
     track.point.normalize();
     track.triangulated = true;
   }
-  unroll(window_, kLineDelay_s);
+  unroll(window_);
   for (id = 1; id <= 4; ++id) {
     const PointSighting& s = window_.points[id].sightings[0];
     const Eigen::Vector2d expected = seenAt(window_.positionOf(window_.points[id]), 0);
@@ -71,7 +72,7 @@ TEST_F(RollingShutterTest, WithoutDepthTheTurnIsTakenOut) {
   const Eigen::Vector3d far_w = inView(4000, -9000, 25000);
   test::seePoint(window_, 1, 0, far_w);
   window_.points[1].sightings[0].seen_px = rolled(far_w);
-  unroll(window_, kLineDelay_s);
+  unroll(window_);
   EXPECT_LT((window_.points[1].sightings[0].px - seenAt(far_w, 0)).norm(), 0.05);
 }
 
@@ -85,7 +86,7 @@ TEST_F(RollingShutterTest, EndsOfLinesHaveTheirOwnTimes) {
   track.origin_w = segment_w.start + Eigen::Vector3d(0.1, -0.2, 0.3);
   track.line = toBlock(toOrthonormal(movedOrigin(lineThrough(segment_w.start, segment_w.end), track.origin_w)));
   track.triangulated = true;
-  unroll(window_, kLineDelay_s);
+  unroll(window_);
   EXPECT_LT((s.start_px - seenAt(segment_w.start, 0)).norm(), 0.1);
   EXPECT_LT((s.end_px - seenAt(segment_w.end, 0)).norm(), 0.1);
   EXPECT_LT((s.end.ray - window_.camera().ray(s.end_px)).norm(), 1e-12);
@@ -94,7 +95,8 @@ TEST_F(RollingShutterTest, EndsOfLinesHaveTheirOwnTimes) {
 TEST_F(RollingShutterTest, AGlobalShutterIsLeftAlone) {
   test::seePoint(window_, 1, 0, inView(0.5, 0.5, 2));
   const Eigen::Vector2d px = window_.points[1].sightings[0].px;
-  unroll(window_, 0);
+  window_.correction[kReadoutAt] = -window_.readout_s();  // the readout was given, and is found to be none
+  unroll(window_);
   EXPECT_EQ(window_.points[1].sightings[0].px, px);
 }
 

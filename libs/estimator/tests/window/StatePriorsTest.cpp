@@ -26,7 +26,7 @@ TEST(CalibrationPriors, TogetherAreOverEveryParameterOnce) {
   const CalibrationParams p;
   CorrectionBlock correction;
   correction << p.focal_sigma_px, -p.focal_sigma_px, p.centre_sigma_px, p.centre_sigma_px, p.distortion_sigma,
-      p.distortion_sigma, p.time_offset_sigma_s;
+      p.distortion_sigma, -p.readout_sigma_s, p.time_offset_sigma_s;
   EXPECT_NEAR(squaredAt(makeCorrectionPriors(p), correction.data()), kCorrectionSize, 1e-9);
   const Pose T = eurocRig().T_b_c;
   const double a = p.extrinsic_rotation_sigma_rad, b = p.extrinsic_translation_sigma_m;
@@ -36,7 +36,7 @@ TEST(CalibrationPriors, TogetherAreOverEveryParameterOnce) {
 
 TEST(CalibrationPriors, APartThatIsWrongLeavesTheOthersAlone) {
   const auto parts = makeCorrectionPriors({});
-  ASSERT_EQ(parts.size(), 4u);
+  ASSERT_EQ(parts.size(), 5u);
   CorrectionBlock distortion = CorrectionBlock::Zero();
   distortion[4] = 0.2;
   int touched = 0;
@@ -53,9 +53,9 @@ TEST(CalibrationPriors, WhatIsNotRefinedIsHeldWithoutARobustLoss) {
   CalibrationParams p;
   p.refine_time_offset = false;
   const auto parts = makeCorrectionPriors(p);
-  ASSERT_EQ(parts.size(), 4u);
-  EXPECT_TRUE(parts[0].refined && parts[1].refined && parts[2].refined);
-  EXPECT_FALSE(parts[3].refined);
+  ASSERT_EQ(parts.size(), 5u);
+  EXPECT_TRUE(parts[0].refined && parts[1].refined && parts[2].refined && parts[3].refined);
+  EXPECT_FALSE(parts[4].refined);
   p.refine_time_offset = true;
   p.refine_camera = false;
   const auto others = makeCorrectionPriors(p);

@@ -41,6 +41,8 @@ TEST(WindowSigma, ObservationsNarrowThePriorAndNothingWidensIt) {
   EXPECT_LT(sigma.camera[2], prior.centre_sigma_px * slack);
   EXPECT_GT(sigma.time_offset_s, 0);
   EXPECT_LT(sigma.time_offset_s, 0.7 * prior.time_offset_sigma_s) << "motion shows the time offset";
+  EXPECT_GT(sigma.readout_s, 0);
+  EXPECT_LT(sigma.readout_s, prior.readout_sigma_s * slack);
   EXPECT_GT(all.bias.gyro.minCoeff(), 0);
   EXPECT_LT(all.bias.gyro.maxCoeff(), 0.05) << "the turning of the images shows it";
   EXPECT_GT(all.bias.accel.minCoeff(), 0);
@@ -49,11 +51,12 @@ TEST(WindowSigma, ObservationsNarrowThePriorAndNothingWidensIt) {
 TEST(WindowSigma, WhatIsHeldHasNone) {
   const SlidingWindow window = flownWithNoise();
   EstimatorParams params;
-  params.calibration.refine_extrinsics = params.calibration.refine_camera = params.calibration.refine_time_offset =
-      false;
+  params.calibration.refine_extrinsics = params.calibration.refine_camera = params.calibration.refine_readout =
+      params.calibration.refine_time_offset = false;
   const WindowSigma all = windowSigma(window, params, window.T_b_c());
   const CalibrationSigma& sigma = all.calibration;
-  EXPECT_EQ(sigma.p_b_c_m.norm() + sigma.R_b_c_rad.norm() + sigma.camera.norm() + sigma.time_offset_s, 0);
+  EXPECT_EQ(sigma.p_b_c_m.norm() + sigma.R_b_c_rad.norm() + sigma.camera.norm() + sigma.readout_s + sigma.time_offset_s,
+            0);
 }
 
 }  // namespace

@@ -26,6 +26,8 @@ struct Rig {
   ImuNoise imu_noise;
   double imu_rate_hz = 200;
   std::shared_ptr<const GrayImage> mask;  ///< of the camera's size, black where images are not used; null: nowhere
+
+  double readout_s() const { return line_delay_s * camera.height; }  ///< of an image: from its first to its last row
 };
 
 }  // namespace lintel

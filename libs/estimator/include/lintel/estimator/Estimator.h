@@ -18,7 +18,7 @@ struct CalibrationSigma {
   Eigen::Vector3d p_b_c_m = Eigen::Vector3d::Zero();
   Eigen::Vector3d R_b_c_rad = Eigen::Vector3d::Zero();                       ///< about the camera's axes
   Eigen::Matrix<double, 6, 1> camera = Eigen::Matrix<double, 6, 1>::Zero();  ///< fx fy cx cy [px], k1 k2
-  double time_offset_s = 0;
+  double time_offset_s = 0, readout_s = 0;
 };
 
 /// Calibration as refined so far.
@@ -26,6 +26,7 @@ struct CalibrationEstimate {
   Camera camera;
   Pose T_b_c;
   double time_offset_s = 0;               ///< an image with stamp t shows the world at t + offset
+  double readout_s = 0;                   ///< of a rolling shutter: from an image's first row to its last
   std::optional<CalibrationSigma> sigma;  ///< of the last window; empty while there is none
 };
 

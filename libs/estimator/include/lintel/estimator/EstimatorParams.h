@@ -36,13 +36,15 @@ struct FactorParams {
 /// What of the calibration is refined, and how well it is known before (standard deviations of the priors).
 struct CalibrationParams {
   bool refine_extrinsics = true;
-  bool refine_camera = true;  ///< fx fy cx cy k1 k2
+  bool refine_camera = true;    ///< fx fy cx cy k1 k2
+  bool refine_readout = false;  ///< of a rolling shutter
   bool refine_time_offset = true;
   double extrinsic_rotation_sigma_rad = 0.005;
   double extrinsic_translation_sigma_m = 0.005;
   double focal_sigma_px = 1.0;
   double centre_sigma_px = 1.0;
   double distortion_sigma = 0.003;
+  double readout_sigma_s = 0.0005;  ///< from an image's first row to its last
   double time_offset_sigma_s = 0.002;
   double loss_width = 3;  ///< Cauchy width of each part's prior, in standard deviations
 
@@ -50,12 +52,14 @@ struct CalibrationParams {
   void fields(F&& field) {
     field("refine_extrinsics", refine_extrinsics);
     field("refine_camera", refine_camera);
+    field("refine_readout", refine_readout);
     field("refine_time_offset", refine_time_offset);
     field("extrinsic_rotation_sigma_rad", extrinsic_rotation_sigma_rad, Range{1e-9, 1});
     field("extrinsic_translation_sigma_m", extrinsic_translation_sigma_m, Range{1e-9, 10});
     field("focal_sigma_px", focal_sigma_px, ReferencePixels{1e-9, 1000});
     field("centre_sigma_px", centre_sigma_px, ReferencePixels{1e-9, 1000});
     field("distortion_sigma", distortion_sigma, Range{1e-9, 10});
+    field("readout_sigma_s", readout_sigma_s, Range{1e-9, 1});
     field("time_offset_sigma_s", time_offset_sigma_s, Range{1e-9, 1});
     field("loss_width", loss_width, Range{0.1, 1000000});
   }

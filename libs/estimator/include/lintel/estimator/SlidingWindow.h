@@ -2,6 +2,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <algorithm>
 #include <cstdint>
 #include <deque>
 #include <map>
@@ -131,9 +132,11 @@ class SlidingWindow {
   PoseBlock extrinsics;  ///< T_b_c
   CorrectionBlock correction = CorrectionBlock::Zero();
   std::vector<WindowPrior> priors;  ///< from marginalisation and from initialisation
+  double unrolled_s = 0;            ///< the readout by which sightings have been moved to their frames' times [s]
 
   const Camera& camera() const { return camera_; }  ///< as calibrated; `correction` is on top
   Camera correctedCamera() const;
+  double readout_s() const { return given_readout_s_ + correction[kReadoutAt]; }  ///< from first to last row
   Pose T_b_c() const { return poseFromBlock(extrinsics.data()); }
 
   bool contains(FrameId id) const;
@@ -154,6 +157,14 @@ class SlidingWindow {
   /// Does not touch priors.
   void removeFrame(FrameId id, bool keyframe);
 
+  /// When the row of a pixel was exposed.
+  RowTime rowTime(const Eigen::Vector2d& seen_px) const {
+    return {shareOfReadout(seen_px), unrolled_s - given_readout_s_};
+  }
+  double shareOfReadout(const Eigen::Vector2d& seen_px) const {
+    return (seen_px.y() - 0.5 * (camera_.height - 1)) / std::max(camera_.height, 1);
+  }
+
   Pose T_w_c(const WindowFrame& f) const { return f.T_w_b() * T_b_c(); }
 
   /// World position of a triangulated point; far away for one at infinity.
@@ -161,6 +172,7 @@ class SlidingWindow {
 
  private:
   Camera camera_;
+  double given_readout_s_;
   CorrectionBlock linearised_at_ = CorrectionBlock::Zero();
 };
 

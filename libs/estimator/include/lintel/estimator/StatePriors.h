@@ -32,7 +32,7 @@ using PriorParts = std::vector<PriorPart>;
 /// The extrinsics T_b_c, to within their sigmas about the calibrated ones: position, rotation.
 PriorParts makeExtrinsicsPriors(const CalibrationParams& params, const Pose& T_b_c_calibrated);
 
-/// The correction about zero: focal lengths, image centre, distortion, time offset.
+/// The correction about zero: focal lengths, image centre, distortion, readout, time offset.
 PriorParts makeCorrectionPriors(const CalibrationParams& params);
 
 /// Zero velocity of a body at rest, to within `velocity_sigma` [m/s]; a motion block.

@@ -18,9 +18,9 @@ struct CameraView {
   Eigen::Matrix3d R_c_w;
   Eigen::Vector3d p_w_c;
   Eigen::Matrix<double, kCameraTangent, kPoseTangent> d_pose, d_extrinsics;  ///< with respect to their tangents
-  Eigen::Matrix<double, kCameraTangent, 1> d_offset;                         ///< with respect to the time offset
+  Eigen::Matrix<double, kCameraTangent, 1> d_offset;  ///< with respect to the time offset; always set
 
-  /// From blocks as the factors get them. The derivatives are only set when they are asked for.
+  /// From blocks as the factors get them. The other derivatives are only set when they are asked for.
   CameraView(const double* pose, const double* extrinsics, const double* correction, const FrameMotion& motion,
              bool derivatives);
 };

@@ -12,4 +12,14 @@ struct FrameMotion {
   Eigen::Vector3d omega_b = Eigen::Vector3d::Zero();  ///< angular rate [rad/s]
 };
 
+/// When a row of a rolling shutter was exposed: `share` of the image's readout after the frame's time, -0.5 (first row)
+/// to 0.5 (last row). The sighting has been moved to the frame's time already, as if the readout were wrong by
+/// `known_s` (the correction block's unit).
+struct RowTime {
+  double share = 0, known_s = 0;
+
+  /// How much later than the sighting's time it was exposed, if the readout is wrong by `readout_s` [s].
+  double delay_s(double readout_s) const { return share * (readout_s - known_s); }
+};
+
 }  // namespace lintel

@@ -24,13 +24,13 @@ struct DirectionTarget {
 };
 
 /// A residual of an image at some states, with its derivatives with respect to the camera's pose (its tangent, see
-/// CameraView), to the intrinsics, and to the target.
+/// CameraView), to intrinsics and readout, and to the target.
 template <class Target>
 struct ImageLinearisation {
   static constexpr int R = Target::kRows;
   Eigen::Matrix<double, R, 1> residual;
   Eigen::Matrix<double, R, kCameraTangent> d_camera;
-  Eigen::Matrix<double, R, kIntrinsicsSize> d_intrinsics;
+  Eigen::Matrix<double, R, kSightingCorrection> d_correction;
   Eigen::Matrix<double, R, Target::kColumns> d_target;
 };
 

@@ -54,7 +54,8 @@ struct LineEnd : RayObservation {
 RayObservation makeObservation(const Camera& calibrated, const Eigen::Vector2d& px,
                                const CorrectionBlock& correction = CorrectionBlock::Zero());
 
-/// The two end points of an observed line [px]; their scales are across the line through both.
+/// The two end points of an observed line [px], a straight line of the calibrated camera that was fitted to an edge; of
+/// the corrected one those of the line that fits the same edge best. Their scales are across the line through both.
 std::pair<LineEnd, LineEnd> makeLineEnds(const Camera& calibrated, const Eigen::Vector2d& start_px,
                                          const Eigen::Vector2d& end_px,
                                          const CorrectionBlock& correction = CorrectionBlock::Zero());

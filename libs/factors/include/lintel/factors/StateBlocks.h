@@ -19,13 +19,17 @@ namespace lintel {
 //   point      4 -> 3   homogeneous point (X, w) of unit length: X / w [m] in world axes from a constant origin
 //   direction  3 -> 2   unit vector, world axes: the direction that a group of lines shares; d <- (d + B delta) / norm
 //                       with B = tangentBasis(d)
-//   correction 7        what the calibrated camera is wrong by: fx fy cx cy [px], k1 k2, time offset [s]
+//   correction 8        what the calibrated camera is wrong by: fx fy cx cy [px], k1 k2, readout [s], time offset [s]
 constexpr int kPoseSize = 7, kPoseTangent = 6;
 constexpr int kMotionSize = 9, kVelocityAt = 0, kBiasGyroAt = 3, kBiasAccelAt = 6;
 constexpr int kLineSize = 5, kLineTangent = 4;
 constexpr int kPointSize = 4, kPointTangent = 3;
 constexpr int kDirectionSize = 3, kDirectionTangent = 2;
-constexpr int kCorrectionSize = 7, kTimeOffsetAt = 6;
+constexpr int kCorrectionSize = 8, kReadoutAt = 6, kTimeOffsetAt = 7;
+
+/// The part of a correction that a sighting depends on by itself: all but the time offset, which moves the camera of a
+/// whole image.
+constexpr int kSightingCorrection = 7;
 
 using PoseBlock = Eigen::Matrix<double, kPoseSize, 1>;
 using MotionBlock = Eigen::Matrix<double, kMotionSize, 1>;
@@ -35,7 +39,7 @@ using DirectionBlock = Eigen::Matrix<double, kDirectionSize, 1>;
 using CorrectionBlock = Eigen::Matrix<double, kCorrectionSize, 1>;
 
 /// d normalised observation / d correction: how one image observation moves with the camera correction.
-/// The column of the time offset is zero: that moves the pose instead (FrameMotion.h).
+/// The columns of readout and time offset are zero: these move the pose instead (FrameMotion.h).
 using ObservationJacobian = Eigen::Matrix<double, 2, kCorrectionSize>;
 
 PoseBlock toBlock(const Pose& pose);

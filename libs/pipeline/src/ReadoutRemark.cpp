@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "ReadoutRemark.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+
+namespace lintel {
+
+namespace {
+
+// Rolling shutters take 5 to 30 ms for an image. What is found with a global shutter is the sum of all that the model
+// leaves out, a fraction of a millisecond.
+constexpr double kShortest_s = 0.002, kLargestShare = 0.1, kSigmas = 5;
+
+}  // namespace
+
+std::string readoutRemark(const Rig& given, const CalibrationEstimate& estimate) {
+  if (!estimate.sigma || given.camera.height <= 0) return {};
+  const double wrong_s = estimate.readout_s - given.readout_s();
+  const double least_s =
+      std::max({kShortest_s, kSigmas * estimate.sigma->readout_s, kLargestShare * std::abs(given.readout_s())});
+  if (!(std::abs(wrong_s) > least_s)) return {};
+  const std::string shutter = given.line_delay_s == 0 ? "the calibration says nothing of a rolling shutter, but"
+                                                      : "the calibration's readout of the rolling shutter is wrong:";
+  char text[400];
+  std::snprintf(text, sizeof text,
+                "%s the rows were exposed one after the other, %.1f ms from the first to the last (sigma %.2f ms); "
+                "corrected on the way, better give `line_delay_s: %.3g` in the camera's calibration, where a stamp is "
+                "that of the middle row",
+                shutter.c_str(), 1000 * estimate.readout_s, 1000 * estimate.sigma->readout_s,
+                estimate.readout_s / given.camera.height);
+  return text;
+}
+
+}  // namespace lintel

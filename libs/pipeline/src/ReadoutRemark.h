@@ -1,0 +1,15 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <string>
+
+#include "lintel/core/Rig.h"
+#include "lintel/estimator/Estimator.h"
+
+namespace lintel {
+
+/// What a run found about the shutter that the calibration does not say: rows that were exposed one after the other
+/// where none is given, or a readout that is another. Empty: nothing.
+std::string readoutRemark(const Rig& given, const CalibrationEstimate& estimate);
+
+}  // namespace lintel

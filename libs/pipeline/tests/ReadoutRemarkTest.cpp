@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "ReadoutRemark.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+namespace lintel {
+namespace {
+
+using ::testing::HasSubstr, ::testing::IsEmpty;
+
+Rig rigWith(double line_delay_s) {
+  Rig rig;
+  rig.camera.height = 500;
+  rig.line_delay_s = line_delay_s;
+  return rig;
+}
+
+CalibrationEstimate found(double readout_s, double sigma_s) {
+  CalibrationEstimate estimate;
+  estimate.readout_s = readout_s;
+  estimate.sigma = CalibrationSigma();
+  estimate.sigma->readout_s = sigma_s;
+  return estimate;
+}
+
+TEST(ReadoutRemark, NamesARollingShutterThatIsNotGiven) {
+  const std::string text = readoutRemark(rigWith(0), found(0.02, 0.0002));
+  EXPECT_THAT(text, HasSubstr("says nothing of a rolling shutter"));
+  EXPECT_THAT(text, HasSubstr("20.0 ms from the first to the last (sigma 0.20 ms)"));
+  EXPECT_THAT(text, HasSubstr("`line_delay_s: 4e-05`"));
+}
+
+TEST(ReadoutRemark, NamesAReadoutThatIsAnother) {
+  EXPECT_THAT(readoutRemark(rigWith(20e-6), found(0.02, 0.0002)), HasSubstr("is wrong: the rows"));
+}
+
+TEST(ReadoutRemark, IsSilentWhereNothingContradicts) {
+  EXPECT_THAT(readoutRemark(rigWith(0), found(0.0015, 0.0001)), IsEmpty());
+  EXPECT_THAT(readoutRemark(rigWith(0), found(0.02, 0.005)), IsEmpty()) << "not observed";
+  EXPECT_THAT(readoutRemark(rigWith(40e-6), found(0.0205, 0.0002)), IsEmpty());
+  EXPECT_THAT(readoutRemark(rigWith(0), {}), IsEmpty()) << "no window";
+}
+
+}  // namespace
+}  // namespace lintel
