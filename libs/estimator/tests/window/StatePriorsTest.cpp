@@ -23,7 +23,8 @@ double squaredAt(const PriorParts& parts, const double* block) {
 }
 
 TEST(CalibrationPriors, TogetherAreOverEveryParameterOnce) {
-  const CalibrationParams p;
+  CalibrationParams p;
+  p.refine_readout = true;
   CorrectionBlock correction;
   correction << p.focal_sigma_px, -p.focal_sigma_px, p.centre_sigma_px, p.centre_sigma_px, p.distortion_sigma,
       p.distortion_sigma, -p.readout_sigma_s, p.time_offset_sigma_s;
@@ -51,6 +52,7 @@ TEST(CalibrationPriors, APartThatIsWrongLeavesTheOthersAlone) {
 
 TEST(CalibrationPriors, WhatIsNotRefinedIsHeldWithoutARobustLoss) {
   CalibrationParams p;
+  p.refine_readout = true;
   p.refine_time_offset = false;
   const auto parts = makeCorrectionPriors(p);
   ASSERT_EQ(parts.size(), 5u);

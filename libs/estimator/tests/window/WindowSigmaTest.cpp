@@ -25,7 +25,8 @@ SlidingWindow flownWithNoise() {
 
 TEST(WindowSigma, ObservationsNarrowThePriorAndNothingWidensIt) {
   const SlidingWindow window = flownWithNoise();
-  const EstimatorParams params;
+  EstimatorParams params;
+  params.calibration.refine_readout = true;
   const WindowSigma all = windowSigma(window, params, window.T_b_c());
   const CalibrationSigma& sigma = all.calibration;
   const CalibrationParams& prior = params.calibration;
