@@ -15,6 +15,10 @@ constexpr double kFolding = 0.05;  ///< a smaller determinant: beyond the radius
 
 double awayFromZero(double z) { return std::abs(z) > 1e-9 ? z : 1e-9; }
 
+/// Whether the image of a lens that is not wide grows in all directions where this is its derivative: not beyond a
+/// fold, nor beyond a pole of the rational model, where the image comes back mirrored.
+bool grows(const Eigen::Matrix2d& J) { return J.determinant() > kFolding && J(0, 0) > 0; }
+
 constexpr int kFoldSteps = 8;  ///< places between the axis and a point that are looked at
 
 /// Radial factor of a lens that is not wide, and its derivative by r^2.
@@ -70,13 +74,17 @@ Eigen::Matrix2d Camera::coefficientJacobian(const Eigen::Vector2d& n) const {
 }
 
 Eigen::Vector2d Camera::undistort(const Eigen::Vector2d& wanted) const {
-  Eigen::Vector2d n = wanted;
-  for (int i = 0; i < 20; ++i) {
+  Eigen::Vector2d n = wanted, invertible = Eigen::Vector2d::Zero();
+  for (int i = 0; i < 40; ++i) {
     const Radial radial(*this, n.squaredNorm());
     const Eigen::Vector2d error = distorted(*this, n, radial) - wanted;
     if (error.squaredNorm() < 1e-24) break;
     const Eigen::Matrix2d J = jacobianAt(*this, n, radial);
-    if (J.determinant() < kFolding) break;
+    if (!grows(J)) {  // a step too far
+      n = 0.5 * (n + invertible);
+      continue;
+    }
+    invertible = n;
     n -= J.inverse() * error;
   }
   return n;
@@ -93,9 +101,9 @@ Eigen::Vector2d Camera::normalise(const Eigen::Vector2d& px) const {
 
 bool Camera::unproject(const Eigen::Vector2d& px, Eigen::Vector3d& ray) const {
   const Eigen::Vector2d position((px.x() - cx) / fx, (px.y() - cy) / fy);
-  if (wide()) return fisheyeRay(*this, position, ray);
+  if (wide()) return fisheyeRay(*this, position, ray) && projects(ray);
   ray = undistort(position).homogeneous();
-  return (distort(ray.head<2>()) - position).squaredNorm() < 1e-18;
+  return (distort(ray.head<2>()) - position).squaredNorm() < 1e-18 && projects(ray);
 }
 
 Eigen::Vector3d Camera::ray(const Eigen::Vector2d& px) const {
@@ -116,7 +124,7 @@ bool Camera::projects(const Eigen::Vector3d& p_c) const {
   if (p_c.z() <= 0) return false;
   const Eigen::Vector2d n = p_c.head<2>() / p_c.z();
   for (int i = kFoldSteps; i > 0; --i)  // a polynomial that has folded back may grow again farther out
-    if (distortJacobian(n * i / kFoldSteps).determinant() <= kFolding) return false;
+    if (!grows(distortJacobian(n * i / kFoldSteps))) return false;
   return true;
 }
 

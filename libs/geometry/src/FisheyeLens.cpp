@@ -8,6 +8,7 @@ namespace lintel {
 namespace {
 
 constexpr double kPi = 3.14159265358979323846;
+constexpr double kFlat = 0.05;  ///< a smaller derivative of the radius: beyond that angle a model is not invertible
 
 /// [Kannala2006]: radius = theta (1 + k1 theta^2 + k2 theta^4 + k3 theta^6 + k4 theta^8), theta the angle to the axis.
 struct RadiusOfAngle {
@@ -25,7 +26,7 @@ LensImage equidistantImage(const Camera& camera, const Eigen::Vector3d& p) {
   const double r = p.head<2>().norm(), size2 = p.squaredNorm(), theta = std::atan2(r, p.z());
   const RadiusOfAngle image(camera, theta);
   LensImage out;
-  out.valid = image.derivative > 0;
+  out.valid = image.derivative > kFlat;
   if (r * r < 1e-16 * size2) {  // on the axis, where the direction of (x, y) is not defined
     const double scale = 1 / (std::abs(p.z()) > 1e-12 ? p.z() : 1e-12);
     out.position = p.head<2>() * scale;
@@ -52,11 +53,16 @@ bool equidistantRay(const Camera& camera, const Eigen::Vector2d& position, Eigen
   const double wanted = position.norm();
   ray = Eigen::Vector3d::UnitZ();
   if (wanted < 1e-12) return true;
-  double theta = std::min(wanted, 0.5 * kPi), error = 1;
-  for (int i = 0; i < 20; ++i) {
+  double theta = std::min(wanted, 0.5 * kPi), invertible = 0, error = 1;
+  for (int i = 0; i < 40; ++i) {
     const RadiusOfAngle image(camera, theta);
     error = image.radius - wanted;
-    if (std::abs(error) < 1e-14 || image.derivative < 0.05) break;  // beyond that angle the model is not invertible
+    if (image.derivative <= kFlat) {  // a step too far
+      theta = 0.5 * (theta + invertible);
+      continue;
+    }
+    if (std::abs(error) < 1e-14) break;
+    invertible = theta;
     theta = std::clamp(theta - error / image.derivative, 0.0, kPi);
   }
   ray << position * (std::sin(theta) / wanted), std::cos(theta);

@@ -2,8 +2,11 @@
 #include "RawlogFile.h"
 
 #include <mrpt/obs/CObservation.h>
+#include <mrpt/obs/CObservationIMU.h>
 #include <mrpt/obs/CSensoryFrame.h>
 #include <mrpt/serialization/CArchive.h>
+
+#include <cstring>
 
 #include "GzStream.h"
 #include "RawlogTime.h"
@@ -24,6 +27,15 @@ mrpt::serialization::CSerializable::Ptr readObject(GzInput& stream) {
   }
 }
 
+/// MRPT reads flags byte by byte into bools: a damaged byte must become one before anybody looks at it.
+void repairFlags(mrpt::obs::CObservation& observation) {
+  const auto imu = dynamic_cast<mrpt::obs::CObservationIMU*>(&observation);
+  if (imu == nullptr) return;
+  unsigned char bytes[sizeof imu->dataIsPresent];
+  std::memcpy(bytes, imu->dataIsPresent.data(), sizeof bytes);
+  for (std::size_t i = 0; i < sizeof bytes; ++i) imu->dataIsPresent[i] = bytes[i] != 0;
+}
+
 }  // namespace
 
 RawlogFile::RawlogFile(const std::string& path) : path_(path), stream_(std::make_unique<GzInput>(path)) {}
@@ -33,6 +45,12 @@ RawlogFile::~RawlogFile() = default;
 std::string RawlogFile::where() const { return path_ + ": entry " + std::to_string(entries_ > 0 ? entries_ - 1 : 0); }
 
 std::shared_ptr<mrpt::obs::CObservation> RawlogFile::next() {
+  const auto observation = nextAsRead();
+  if (observation) repairFlags(*observation);
+  return observation;
+}
+
+std::shared_ptr<mrpt::obs::CObservation> RawlogFile::nextAsRead() {
   while (pending_.empty()) {
     mrpt::serialization::CSerializable::Ptr object;
     try {

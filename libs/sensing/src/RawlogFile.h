@@ -29,6 +29,8 @@ class RawlogFile {
   std::string where() const;
 
  private:
+  std::shared_ptr<mrpt::obs::CObservation> nextAsRead();
+
   std::string path_;
   std::unique_ptr<GzInput> stream_;
   std::deque<std::shared_ptr<mrpt::obs::CObservation>> pending_;

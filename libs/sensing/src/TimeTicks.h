@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <cstdlib>
 #include <string>
 
 namespace lintel {
@@ -16,8 +17,9 @@ constexpr std::int64_t cutToTick(std::int64_t t_ns) { return t_ns - t_ns % kTick
 
 /// Seconds with 9 decimals, exact, for messages.
 inline std::string secondsText(std::int64_t t_ns) {
-  std::string fraction = std::to_string(t_ns % 1000000000);
-  return std::to_string(t_ns / 1000000000) + "." + std::string(9 - fraction.size(), '0') + fraction + " s";
+  const std::string fraction = std::to_string(std::abs(t_ns % 1000000000));
+  return (t_ns < 0 ? "-" : "") + std::to_string(std::abs(t_ns / 1000000000)) + "." +
+         std::string(9 - fraction.size(), '0') + fraction + " s";
 }
 
 }  // namespace lintel

@@ -7,6 +7,7 @@
 #include <filesystem>
 
 #include "Bag.h"
+#include "TimeTicks.h"
 #include "TinyEuroc.h"
 #include "lintel/sensing/RecordedSensors.h"
 
@@ -91,6 +92,20 @@ TEST_F(BagRecordingTest, TopicsAreListed) {
     EXPECT_EQ(sensors[1].label, "/imu0");
     EXPECT_EQ(sensors[1].count, topics[1].count);
   }
+}
+
+TEST(BagTopic, AbsurdTimesGiveARateAllTheSame) {
+  BagTopic topic;
+  topic.count = 1000000001;
+  topic.first_ns = -8756484179573048825;
+  topic.last_ns = 1403636580779790151;
+  EXPECT_NEAR(topic.rate_hz(), 0.1, 1e-9);  // the difference is more than 64 bits hold
+}
+
+TEST(TimeTicks, TimesBefore1970AreWritten) {
+  EXPECT_EQ(secondsText(1403636580779790151), "1403636580.779790151 s");
+  EXPECT_EQ(secondsText(-999999999), "-0.999999999 s");
+  EXPECT_EQ(secondsText(-1500000000), "-1.500000000 s");
 }
 
 TEST_F(BagRecordingTest, SensorsOfFoldersAreListed) {

@@ -5,7 +5,9 @@
 #include <mrpt/obs/CObservationImage.h>
 
 #include <algorithm>
+#include <cstring>
 
+#include "RawlogFile.h"
 #include "TinyEuroc.h"
 #include "TinyRawlog.h"
 #include "lintel/sensing/EurocToRawlog.h"
@@ -166,6 +168,27 @@ TEST_F(RawlogRecordingTest, IncompleteImuObservationsAreRefused) {
   convert();
   edit(rawlog_, removeAll<CObservationImage>);
   EXPECT_THAT(openingError(rawlog_), HasSubstr("holds no camera image"));
+}
+
+// Found by the fuzzer: MRPT keeps the byte as it is, and no bool may be 255.
+TEST_F(RawlogRecordingTest, ADamagedFlagIsOneThatIsSet) {
+  convert();
+  edit(rawlog_, [](auto& observations) {
+    for (const auto& observation : observations)
+      if (const auto imu = as<CObservationIMU>(observation))
+        std::memset(&imu->dataIsPresent[mrpt::obs::IMU_WY], 255, 1);
+  });
+  RawlogFile file(rawlog_);
+  int samples = 0;
+  while (const auto observation = file.next()) {
+    const auto imu = as<CObservationIMU>(observation);
+    if (!imu) continue;
+    unsigned char flag = 0;
+    std::memcpy(&flag, &imu->dataIsPresent[mrpt::obs::IMU_WY], 1);
+    EXPECT_EQ(flag, 1);
+    ++samples;
+  }
+  EXPECT_GT(samples, 0);
 }
 
 TEST_F(RawlogRecordingTest, UnusableCalibrationsAreRefused) {
