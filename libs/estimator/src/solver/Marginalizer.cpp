@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "lintel/geometry/SmallMatrices.h"
+#include "solver/InformationRoot.h"
 
 namespace lintel {
 
@@ -28,31 +29,6 @@ void eliminate(NormalEquations& eq, Eigen::Index at, Eigen::Index size) {
   const Eigen::MatrixXd gain = Hbm * pseudoInverse(eq.H.block(at, at, size, size));
   eq.b.tail(rest) -= gain * eq.b.segment(at, size);
   eq.H.bottomRightCorner(rest, rest) -= gain * Hbm.transpose();
-}
-
-/// The prior with the cost 1/2 dx' H dx + b' dx: H = A' A by Cholesky's decomposition with pivots. Rows without
-/// information, or with no more than what rounding leaves, stay out.
-WindowPrior priorOf(std::vector<BlockKey> keys, std::vector<PriorBlock> blocks, const Eigen::MatrixXd& H,
-                    const Eigen::VectorXd& b) {
-  constexpr double kRounding = 1e-12;  // of what a state had before the others were taken from it
-  const Eigen::LDLT<Eigen::MatrixXd> ldlt(H);
-  const Eigen::VectorXd d = ldlt.vectorD();
-  const Eigen::VectorXi place =
-      ldlt.transpositionsP() * Eigen::VectorXi::LinSpaced(d.size(), 0, static_cast<int>(d.size()) - 1);
-  const Eigen::MatrixXd U = ldlt.matrixU();  // of the states in the order of `place`
-  const Eigen::VectorXd y = ldlt.matrixL().solve(Eigen::VectorXd(b(place)));
-  Eigen::MatrixXd A(d.size(), d.size());
-  Eigen::VectorXd r_0(d.size());
-  Eigen::Index rows = 0;
-  for (Eigen::Index i = 0; i < d.size(); ++i) {
-    if (!(d[i] > std::max(kNoInformation, kRounding * H(place[i], place[i])))) continue;
-    for (Eigen::Index k = 0; k < d.size(); ++k) A(rows, place[k]) = std::sqrt(d[i]) * U(i, k);
-    r_0[rows++] = y[i] / std::sqrt(d[i]);
-  }
-  WindowPrior prior;
-  prior.blocks = std::move(keys);
-  prior.factor = std::make_shared<PriorFactor>(std::move(blocks), A.topRows(rows), r_0.head(rows));
-  return prior;
 }
 
 /// Points slide: x' = x + noise of this variance, independent for each coordinate. x' takes the place of x in the
@@ -125,7 +101,11 @@ std::optional<WindowPrior> marginalise(SlidingWindow& window, const std::vector<
     for (Eigen::Index row = eq.offsets[i]; row < eq.offsets[i + 1]; ++row) point_rows.push_back(row - start);
   }
   if (staying.walk_rad > 0) slide(H, b, point_rows, staying.walk_rad * staying.walk_rad);
-  return priorOf({eq.blocks.begin() + static_cast<std::ptrdiff_t>(kept), eq.blocks.end()}, std::move(blocks), H, b);
+  LinearResidual root = informationRoot(H, b);
+  WindowPrior prior;
+  prior.blocks = {eq.blocks.begin() + static_cast<std::ptrdiff_t>(kept), eq.blocks.end()};
+  prior.factor = std::make_shared<PriorFactor>(std::move(blocks), std::move(root.A), std::move(root.r_0));
+  return prior;
 }
 
 }  // namespace lintel
