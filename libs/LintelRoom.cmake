@@ -47,6 +47,13 @@ function(lintel_test_executable TARGET)
   lintel_precompile(${TARGET} geometry_tests ${LINTEL_PRECOMPILED} <gmock/gmock.h> <gtest/gtest.h>)
 endfunction()
 
+# lintel_allocator(TARGET): a program whose malloc is mimalloc's, although no object names it. Sanitizers bring their own.
+function(lintel_allocator TARGET)
+  if(NOT CMAKE_CXX_FLAGS MATCHES "-fsanitize")
+    target_link_options(${TARGET} BEFORE PRIVATE -Wl,--push-state,--no-as-needed $<TARGET_FILE:mimalloc> -Wl,--pop-state)
+  endif()
+endfunction()
+
 # lintel_cases(TARGET NAME file…): a case of ctest, NAME.FILE, for each file of TARGET's GoogleTest cases. Not one for each of
 # them, as most take less time than the start of a program. Where a case skips itself and none fails, ctest says "Skipped".
 function(lintel_cases TARGET NAME)

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // load_figures RECORDING [refine]: memory and CPU time of a long recording, a line of JSON for every minute of it
 // (long_run).
-#include <malloc.h>
-
 #include <algorithm>
 #include <cstdio>
 #include <fstream>
@@ -18,7 +16,7 @@ namespace lintel {
 namespace {
 
 struct Minute {
-  double resident_mb = 0, used_mb = 0;
+  double resident_mb = 0;
   std::size_t frames = 0;
 };
 
@@ -52,14 +50,13 @@ void run(const std::string& path, bool refine) {
     now.frames = done;
     if (done % 20 != 0) return;
     now.resident_mb = std::max(now.resident_mb, residentMb());
-    now.used_mb = std::max(now.used_mb, 1e-6 * static_cast<double>(mallinfo2().uordblks + mallinfo2().hblkhd));
   };
   const OdometryResult result = runOdometry(*recording, configuration, options);
   std::size_t from = 0;
   for (std::size_t i = 0; i < minutes.size(); ++i) {
     const Minute& m = minutes[i];
-    std::printf("{\"minute\": %zu, \"frames\": %zu, \"resident_mb\": %.1f, \"used_mb\": %.1f, \"median_ms\": %.3f}\n",
-                i + 1, m.frames - from, m.resident_mb, m.used_mb, medianMs(result.statistics, from, m.frames));
+    std::printf("{\"minute\": %zu, \"frames\": %zu, \"resident_mb\": %.1f, \"median_ms\": %.3f}\n", i + 1,
+                m.frames - from, m.resident_mb, medianMs(result.statistics, from, m.frames));
     from = m.frames;
   }
   std::printf(

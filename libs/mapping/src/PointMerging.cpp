@@ -38,8 +38,15 @@ int mergePoints(const KeyframeCameras& cameras, const PointFitParams& fit, const
   SpatialIndex index(kPointCell_m);
   for (std::size_t i = 0; i < points.size(); ++i)
     if (points[i].known) index.add(i, points[i].p_w);
-  std::vector<PointPair> candidates;
-  for (const auto& [a, b] : index.pairs()) candidates.push_back({(points[a].p_w - points[b].p_w).norm(), a, b});
+  const double most_px = 3 * params.point_max_error_px;
+  const auto alike = [&](std::size_t a, std::size_t b) {
+    return projectsOnto(cameras, points[a], points[b], most_px) && projectsOnto(cameras, points[b], points[a], most_px);
+  };
+  std::vector<PointPair> candidates;  // a place seen again and again has too many neighbours to keep them all
+  index.eachPair([&](std::size_t a, std::size_t b) {
+    if (!shareKeyframe(points[a], points[b]) && alike(a, b))
+      candidates.push_back({(points[a].p_w - points[b].p_w).norm(), a, b});
+  });
   std::sort(candidates.begin(), candidates.end());
 
   MergedRecords records(points.size());
@@ -47,10 +54,7 @@ int mergePoints(const KeyframeCameras& cameras, const PointFitParams& fit, const
   for (const PointPair& candidate : candidates) {
     const std::size_t a = std::min(records.rootOf(candidate.a), records.rootOf(candidate.b)),
                       b = std::max(records.rootOf(candidate.a), records.rootOf(candidate.b));
-    if (a == b || shareKeyframe(points[a], points[b])) continue;
-    const double most_px = 3 * params.point_max_error_px;
-    if (!projectsOnto(cameras, points[a], points[b], most_px) || !projectsOnto(cameras, points[b], points[a], most_px))
-      continue;
+    if (a == b || shareKeyframe(points[a], points[b]) || !alike(a, b)) continue;
     PointRecord joint = points[a];
     joint.id = std::min(points[a].id, points[b].id);
     joint.views = mergedViews(points[a].views, points[b].views);

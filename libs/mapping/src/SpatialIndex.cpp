@@ -19,12 +19,11 @@ void SpatialIndex::add(std::size_t thing, const Eigen::Vector3d& p_w) {
       {static_cast<std::int64_t>(c.x()), static_cast<std::int64_t>(c.y()), static_cast<std::int64_t>(c.z()), thing});
 }
 
-std::vector<std::pair<std::size_t, std::size_t>> SpatialIndex::pairs() const {
+void SpatialIndex::eachPair(const std::function<void(std::size_t, std::size_t)>& take) const {
   std::vector<Entry> sorted = entries_;
   std::sort(sorted.begin(), sorted.end());
   const auto same = [](const Entry& a, const Entry& b) { return !(a < b) && !(b < a); };
   sorted.erase(std::unique(sorted.begin(), sorted.end(), same), sorted.end());
-  std::vector<std::pair<std::size_t, std::size_t>> result;
   for (const Entry& e : sorted)
     for (std::int64_t dx = -1; dx <= 1; ++dx)
       for (std::int64_t dy = -1; dy <= 1; ++dy) {
@@ -32,8 +31,13 @@ std::vector<std::pair<std::size_t, std::size_t>> SpatialIndex::pairs() const {
         const Entry from{e.x + dx, e.y + dy, e.z - 1, 0};
         for (auto it = std::lower_bound(sorted.begin(), sorted.end(), from);
              it != sorted.end() && it->x == from.x && it->y == from.y && it->z <= e.z + 1; ++it)
-          if (e.thing < it->thing) result.emplace_back(e.thing, it->thing);
+          if (e.thing < it->thing) take(e.thing, it->thing);
       }
+}
+
+std::vector<std::pair<std::size_t, std::size_t>> SpatialIndex::pairs() const {
+  std::vector<std::pair<std::size_t, std::size_t>> result;
+  eachPair([&result](std::size_t a, std::size_t b) { result.emplace_back(a, b); });
   std::sort(result.begin(), result.end());
   result.erase(std::unique(result.begin(), result.end()), result.end());
   return result;

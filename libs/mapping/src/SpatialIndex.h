@@ -3,6 +3,7 @@
 
 #include <Eigen/Core>
 #include <cstdint>
+#include <functional>
 #include <utility>
 #include <vector>
 
@@ -19,6 +20,9 @@ class SpatialIndex {
   /// All pairs (a < b) of things with points in the same cube or in neighbouring ones, ascending. Points nearer than
   /// one cube are always found, farther than 3.5 cubes never.
   std::vector<std::pair<std::size_t, std::size_t>> pairs() const;
+
+  /// The same, handed on instead of kept: as often as two things have points in such cubes, in the order of the cubes.
+  void eachPair(const std::function<void(std::size_t a, std::size_t b)>& take) const;
 
  private:
   struct Entry {

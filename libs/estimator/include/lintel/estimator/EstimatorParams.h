@@ -36,15 +36,15 @@ struct FactorParams {
 /// What of the calibration is refined, and how well it is known before (standard deviations of the priors).
 struct CalibrationParams {
   bool refine_extrinsics = true;
-  bool refine_camera = true;    ///< fx fy cx cy k1 k2
-  bool refine_readout = false;  ///< of a rolling shutter
+  bool refine_camera = true;   ///< fx fy cx cy k1 k2
+  bool refine_readout = true;  ///< of a rolling shutter
   bool refine_time_offset = true;
   double extrinsic_rotation_sigma_rad = 0.005;
   double extrinsic_translation_sigma_m = 0.005;
   double focal_sigma_px = 1.0;
   double centre_sigma_px = 1.0;
   double distortion_sigma = 0.003;
-  double readout_sigma_s = 0.0005;  ///< from an image's first row to its last
+  double readout_sigma_s = 0.00005;  ///< from an image's first row to its last
   double time_offset_sigma_s = 0.002;
   double loss_width = 3;  ///< Cauchy width of each part's prior, in standard deviations
 
