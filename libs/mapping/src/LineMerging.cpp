@@ -91,10 +91,10 @@ class LineMerger {
         index.add(i, segments_[i].start + (segments_[i].end - segments_[i].start) * (static_cast<double>(k) / n));
     }
     std::vector<LinePair> result;
-    for (const auto& [a, b] : index.pairs()) {
+    index.eachPair([&](std::size_t a, std::size_t b) {
       LinePair candidate{0, a, b};
       if (near(a, b, candidate.score)) result.push_back(candidate);
-    }
+    });
     std::sort(result.begin(), result.end());
     return result;
   }

@@ -63,11 +63,11 @@ class LineSpacer {
       for (int k = 0; k <= static_cast<int>(steps); ++k) index.add(i, s.start + (s.end - s.start) * (k / steps));
     }
     std::vector<std::vector<std::size_t>> result(lines_.size());
-    for (const auto& [a, b] : index.pairs()) {
-      if (lineAngle(lines_[a].segment_w.direction(), lines_[b].segment_w.direction()) > kParallel_rad) continue;
+    index.eachPair([&](std::size_t a, std::size_t b) {
+      if (lineAngle(lines_[a].segment_w.direction(), lines_[b].segment_w.direction()) > kParallel_rad) return;
       result[a].push_back(b);
       result[b].push_back(a);
-    }
+    });
     return result;
   }
 

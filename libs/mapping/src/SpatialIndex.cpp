@@ -20,27 +20,25 @@ void SpatialIndex::add(std::size_t thing, const Eigen::Vector3d& p_w) {
 }
 
 void SpatialIndex::eachPair(const std::function<void(std::size_t, std::size_t)>& take) const {
-  std::vector<Entry> sorted = entries_;
-  std::sort(sorted.begin(), sorted.end());
+  std::vector<Entry> by_cube = entries_;
+  std::sort(by_cube.begin(), by_cube.end());
   const auto same = [](const Entry& a, const Entry& b) { return !(a < b) && !(b < a); };
-  sorted.erase(std::unique(sorted.begin(), sorted.end(), same), sorted.end());
-  for (const Entry& e : sorted)
+  by_cube.erase(std::unique(by_cube.begin(), by_cube.end(), same), by_cube.end());
+  std::vector<Entry> by_thing = by_cube;
+  std::stable_sort(by_thing.begin(), by_thing.end(), [](const Entry& a, const Entry& b) { return a.thing < b.thing; });
+  std::vector<std::size_t> met(by_thing.empty() ? 0 : by_thing.back().thing + 1, 0);  // after which thing, from 1 on
+  for (const Entry& e : by_thing)
     for (std::int64_t dx = -1; dx <= 1; ++dx)
       for (std::int64_t dy = -1; dy <= 1; ++dy) {
         // the three cubes of a column follow each other in the order
         const Entry from{e.x + dx, e.y + dy, e.z - 1, 0};
-        for (auto it = std::lower_bound(sorted.begin(), sorted.end(), from);
-             it != sorted.end() && it->x == from.x && it->y == from.y && it->z <= e.z + 1; ++it)
-          if (e.thing < it->thing) take(e.thing, it->thing);
+        for (auto it = std::lower_bound(by_cube.begin(), by_cube.end(), from);
+             it != by_cube.end() && it->x == from.x && it->y == from.y && it->z <= e.z + 1; ++it)
+          if (e.thing < it->thing && met[it->thing] != e.thing + 1) {
+            met[it->thing] = e.thing + 1;
+            take(e.thing, it->thing);
+          }
       }
-}
-
-std::vector<std::pair<std::size_t, std::size_t>> SpatialIndex::pairs() const {
-  std::vector<std::pair<std::size_t, std::size_t>> result;
-  eachPair([&result](std::size_t a, std::size_t b) { result.emplace_back(a, b); });
-  std::sort(result.begin(), result.end());
-  result.erase(std::unique(result.begin(), result.end()), result.end());
-  return result;
 }
 
 }  // namespace lintel

@@ -4,7 +4,6 @@
 #include <Eigen/Core>
 #include <cstdint>
 #include <functional>
-#include <utility>
 #include <vector>
 
 namespace lintel {
@@ -17,11 +16,9 @@ class SpatialIndex {
 
   void add(std::size_t thing, const Eigen::Vector3d& p_w);
 
-  /// All pairs (a < b) of things with points in the same cube or in neighbouring ones, ascending. Points nearer than
-  /// one cube are always found, farther than 3.5 cubes never.
-  std::vector<std::pair<std::size_t, std::size_t>> pairs() const;
-
-  /// The same, handed on instead of kept: as often as two things have points in such cubes, in the order of the cubes.
+  /// Hands on all pairs (a < b) of things with points in the same cube or in neighbouring ones, each once, a ascending.
+  /// Points nearer than one cube are always found, farther than 3.5 cubes never. Of places seen again and again there
+  /// are too many pairs to keep them.
   void eachPair(const std::function<void(std::size_t a, std::size_t b)>& take) const;
 
  private:
