@@ -56,10 +56,10 @@ TEST(InformationRoot, DirectionsWithoutInformationGetNoRow) {
 }
 
 TEST(InformationRoot, RoundingInAStateThatOthersTellIsNoInformation) {
-  // x0 and x1 are known only as a sum; what rounding adds to b would be 1000 sigmas of the difference
+  // x0 and x1 are known only as a sum; rounding says more, and would make a residual of 950 sigmas of it
   Eigen::Matrix3d H;
-  H << 1e6, 1e6, 0, 1e6, 1e6 * (1 + 1e-13), 0, 0, 0, 1;
-  const LinearResidual root = informationRoot(H, Eigen::Vector3d(2, 2 + 1e-6, 1));
+  H << 1e6, 1e6, 0, 1e6, 1e6 * (1 + 1e-11), 0, 0, 0, 1;
+  const LinearResidual root = informationRoot(H, Eigen::Vector3d(2, 5, 1));
   ASSERT_EQ(root.A.rows(), 2);
   EXPECT_NEAR(root.r_0.norm(), std::sqrt(4e-6 + 1), 1e-9);
 }
