@@ -44,7 +44,7 @@ struct CalibrationParams {
   double focal_sigma_px = 1.0;
   double centre_sigma_px = 1.0;
   double distortion_sigma = 0.003;
-  double readout_sigma_s = 0.00005;  ///< from an image's first row to its last
+  double readout_sigma_s = 0.0002;  ///< from an image's first row to its last
   double time_offset_sigma_s = 0.002;
   double loss_width = 3;  ///< Cauchy width of each part's prior, in standard deviations
 
