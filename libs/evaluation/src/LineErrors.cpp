@@ -76,8 +76,9 @@ void addPrecision(LineErrors& result, const std::vector<AlignedLine>& lines, con
   Shares precision(params.tolerances_m);
   ErrorCollector all, degenerate, well_determined, constrained;
   EdgeCover cover;
+  const BoxIndex index = indexOf(truth);
   for (const AlignedLine& line : lines) {
-    const LineMatch match = matchLine(line.segment, truth, params);
+    const LineMatch match = matchLine(line.segment, truth, index, params);
     const double piece_m = line.segment.length() / static_cast<double>(match.distances_m.size());
     for (const double distance_m : match.distances_m) precision.add(piece_m, distance_m);
     if (!match.edge) continue;
@@ -109,16 +110,21 @@ void addSurfacePrecision(LineErrors& result, const std::vector<AlignedLine>& lin
 
 void addRecall(LineErrors& result, const std::vector<AlignedLine>& lines, const std::vector<TrueLine>& truth,
                const LineErrorParams& params) {
+  constexpr double kBeside_m = 0.2;  // lines farther off cannot matter: above any tolerance
+  const auto reach_m = [](const AlignedLine& line) { return 0.5 * line.segment.length() + kBeside_m; };
+  std::vector<BoxIndex::Box> boxes;
+  for (const AlignedLine& line : lines) boxes.push_back(boxAroundMiddle(line.segment, reach_m(line)));
+  const BoxIndex index(boxes);
   Shares recall(params.tolerances_m);
   for (const TrueLine& true_line : truth) {
     const Segment3& edge = true_line.segment_w;
     if (edge.length() < params.observable_length_m || true_line.frames_seen < params.observable_frames) continue;
     result.observable_m += edge.length();
     std::vector<const Segment3*> near;
-    for (const AlignedLine& line : lines)
-      if (lineAngle(line.segment.direction(), edge.direction()) < params.max_angle_rad &&
-          distanceToSegment(line.segment.midpoint(), edge) < 0.5 * line.segment.length() + 0.2)
-        near.push_back(&line.segment);
+    for (const std::size_t i : index.touching(boxOf(edge)))
+      if (lineAngle(lines[i].segment.direction(), edge.direction()) < params.max_angle_rad &&
+          distanceToSegment(lines[i].segment.midpoint(), edge) < reach_m(lines[i]))
+        near.push_back(&lines[i].segment);
     const auto pieces = piecesOf(edge, params.step_m);
     for (const Eigen::Vector3d& p : pieces) {
       double distance_m = std::numeric_limits<double>::infinity();

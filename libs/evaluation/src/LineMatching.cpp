@@ -17,15 +17,15 @@ struct Neighbour {
   bool same_direction;  // within max_angle_rad
 };
 
-std::vector<Neighbour> neighboursOf(const Segment3& segment, const std::vector<TrueLine>& truth,
+std::vector<Neighbour> neighboursOf(const Segment3& segment, const std::vector<TrueLine>& truth, const BoxIndex& index,
                                     const LineErrorParams& params) {
+  const double radius_m = 0.5 * segment.length() + kNeighbourhood_m;
   std::vector<Neighbour> neighbours;
-  for (std::size_t i = 0; i < truth.size(); ++i) {
+  for (const std::size_t i : index.touching(boxAroundMiddle(segment, radius_m))) {
     const Segment3& edge = truth[i].segment_w;
     const double angle = lineAngle(segment.direction(), edge.direction());
     if (angle >= params.match_angle_rad) continue;
-    if (distanceToSegment(segment.midpoint(), edge) < 0.5 * segment.length() + kNeighbourhood_m)
-      neighbours.push_back({i, angle < params.max_angle_rad});
+    if (distanceToSegment(segment.midpoint(), edge) < radius_m) neighbours.push_back({i, angle < params.max_angle_rad});
   }
   return neighbours;
 }
@@ -41,8 +41,15 @@ std::vector<Eigen::Vector3d> piecesOf(const Segment3& segment, double step_m) {
   return middles;
 }
 
-LineMatch matchLine(const Segment3& segment_w, const std::vector<TrueLine>& truth, const LineErrorParams& params) {
-  const std::vector<Neighbour> neighbours = neighboursOf(segment_w, truth, params);
+BoxIndex indexOf(const std::vector<TrueLine>& truth) {
+  std::vector<BoxIndex::Box> boxes;
+  for (const TrueLine& line : truth) boxes.push_back(boxOf(line.segment_w));
+  return BoxIndex(boxes);
+}
+
+LineMatch matchLine(const Segment3& segment_w, const std::vector<TrueLine>& truth, const BoxIndex& index,
+                    const LineErrorParams& params) {
+  const std::vector<Neighbour> neighbours = neighboursOf(segment_w, truth, index, params);
   const auto pieces = piecesOf(segment_w, params.step_m);
   LineMatch match;
   std::map<std::size_t, std::size_t> votes;

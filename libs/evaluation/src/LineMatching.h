@@ -5,6 +5,7 @@
 #include <optional>
 #include <vector>
 
+#include "BoxIndex.h"
 #include "lintel/evaluation/LineErrors.h"
 
 namespace lintel {
@@ -19,6 +20,11 @@ struct LineMatch {
   std::optional<std::size_t> edge;  ///< index of the edge that the segment is matched to
 };
 
-LineMatch matchLine(const Segment3& segment_w, const std::vector<TrueLine>& truth, const LineErrorParams& params);
+/// The edges' boxes, in their order.
+BoxIndex indexOf(const std::vector<TrueLine>& truth);
+
+/// `index` is that of `truth`.
+LineMatch matchLine(const Segment3& segment_w, const std::vector<TrueLine>& truth, const BoxIndex& index,
+                    const LineErrorParams& params);
 
 }  // namespace lintel
