@@ -54,6 +54,14 @@ function(lintel_allocator TARGET)
   endif()
 endfunction()
 
+# Seconds after which a test counts as hanging; with sanitizers programs take ten times as long and more.
+set(LINTEL_TEST_TIMEOUT 300)
+set(LINTEL_LONG_TEST_TIMEOUT 900)
+if(CMAKE_CXX_FLAGS MATCHES "-fsanitize")
+  set(LINTEL_TEST_TIMEOUT 3600)
+  set(LINTEL_LONG_TEST_TIMEOUT 10800)
+endif()
+
 # lintel_cases(TARGET NAME file…): a case of ctest, NAME.FILE, for each file of TARGET's GoogleTest cases. Not one for each of
 # them, as most take less time than the start of a program. Where a case skips itself and none fails, ctest says "Skipped".
 function(lintel_cases TARGET NAME)
@@ -74,7 +82,7 @@ function(lintel_cases TARGET NAME)
     get_filename_component(case ${file} NAME_WE)
     add_test(NAME ${NAME}.${case} COMMAND ${TARGET} "--gtest_filter=${filter}")
     set_tests_properties(${NAME}.${case} PROPERTIES
-      LABELS unit TIMEOUT 300 SKIP_REGULAR_EXPRESSION "\\[  SKIPPED \\] [^\n]*[\n]*$")
+      LABELS unit TIMEOUT ${LINTEL_TEST_TIMEOUT} SKIP_REGULAR_EXPRESSION "\\[  SKIPPED \\] [^\n]*[\n]*$")
   endforeach()
 endfunction()
 

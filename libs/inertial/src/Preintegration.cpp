@@ -15,6 +15,7 @@ constexpr double kBridgedAccel = 0.6;  // [m/s^2/sqrt(Hz)]
 }  // namespace
 
 void Preintegration::append(const ImuBatch& samples) {
+  samples_.reserve(samples_.size() + samples.size());  // no more: the map keeps thousands of these
   for (const ImuSample& sample : samples) {
     if (!samples_.empty()) {
       if (sample.t_ns <= samples_.back().t_ns) continue;  // the shared end of two batches

@@ -15,6 +15,7 @@ PointRecord recordOf(const RetiredPoint& retired) {
   point.known = retired.triangulated;
   point.p_w = retired.p_w;
   point.sigma_distance_m = retired.sigma_distance_m;
+  point.views.reserve(retired.sightings.size());
   for (const PointSighting& s : retired.sightings) point.views.push_back({s.frame, s.px, true});
   return point;
 }
@@ -28,6 +29,7 @@ LineRecord recordOf(const RetiredLine& retired) {
     line.estimate.middle_w = retired.line_w.nearestPoint();
     line.estimate.direction_w = retired.line_w.d.normalized();
   }
+  line.views.reserve(retired.sightings.size());
   for (const LineSighting& s : retired.sightings)
     line.views.push_back({s.frame, retired.id, s.start_px, s.end_px, static_cast<float>(s.sigma_px), true});
   return line;
