@@ -9,7 +9,7 @@ OutputFiles csvFiles(const Drawing& drawing, const std::string& path) {
   Text text;
   text
       << "id,x0,y0,z0,x1,y1,z1,observations,first_s,last_s,sigma_direction_rad,sigma_distance_m,degenerate,constrained,"
-         "group,group_name\n";
+         "group,group_name,source\n";
   for (const MapLine* line : drawing.lines) {
     const auto& [a, b] = line->segment_w;
     text << line->id;
@@ -18,7 +18,8 @@ OutputFiles csvFiles(const Drawing& drawing, const std::string& path) {
     text.seconds(line->first_t_ns) << ',';
     text.seconds(line->last_t_ns) << ',' << line->sigma_direction_rad << ',' << line->sigma_distance_m << ','
                                   << (line->degenerate ? 1 : 0) << ',' << (line->constrained ? 1 : 0) << ','
-                                  << line->group << ',' << names(line->group) << '\n';
+                                  << line->group << ',' << names(line->group) << ','
+                                  << (line->mapped ? "mapped" : "tracked") << '\n';
   }
   return {{path, std::move(text.bytes())}};
 }

@@ -64,17 +64,18 @@ std::string joinGlb(const Glb& glb) {
 /// What is known of each line of a part, by column: element i belongs to the mesh's segment i.
 Json lineData(const Drawing& drawing, const DrawnPart& part) {
   Json ids = Json::array(), observations = Json::array(), direction = Json::array(), distance = Json::array(),
-       degenerate = Json::array(), constrained = Json::array();
+       degenerate = Json::array(), constrained = Json::array(), mapped = Json::array();
   const auto finite = [](double v) { return std::isfinite(v) ? Json(static_cast<float>(v)) : Json(nullptr); };
   for (const DrawnSegment& s : part.segments) {
     ids.push_back(s.line->id), observations.push_back(s.line->observations.size());
     direction.push_back(finite(s.line->sigma_direction_rad)), distance.push_back(finite(s.line->sigma_distance_m));
     degenerate.push_back(s.line->degenerate ? 1 : 0), constrained.push_back(s.line->constrained ? 1 : 0);
+    mapped.push_back(s.line->mapped ? 1 : 0);
   }
   const GroupNames names(*drawing.map);
   return {{"group", part.group},          {"group_name", names(part.group)},  {"id", ids},
           {"observations", observations}, {"sigma_direction_rad", direction}, {"sigma_distance_m", distance},
-          {"degenerate", degenerate},     {"constrained", constrained}};
+          {"degenerate", degenerate},     {"constrained", constrained},       {"mapped", mapped}};
 }
 
 /// What is known of each keyframe, by column. Times are text: they do not fit a reader's double.

@@ -60,7 +60,7 @@ Json linesData(const Drawing& drawing, std::int64_t origin_ns) {
   Floats ends;
   Json data;
   for (const char* column : {"id", "length", "observations", "first_s", "last_s", "sigma_direction_deg",
-                             "sigma_distance_m", "group", "degenerate", "constrained"}) {
+                             "sigma_distance_m", "group", "degenerate", "constrained", "mapped"}) {
     data[column] = Json::array();
   }
   for (const MapLine* line : drawing.lines) {
@@ -72,7 +72,7 @@ Json linesData(const Drawing& drawing, std::int64_t origin_ns) {
     data["sigma_direction_deg"].push_back(rounded(line->sigma_direction_rad * 180 / M_PI));
     data["sigma_distance_m"].push_back(rounded(line->sigma_distance_m));
     data["group"].push_back(line->group), data["degenerate"].push_back(line->degenerate ? 1 : 0),
-        data["constrained"].push_back(line->constrained ? 1 : 0);
+        data["constrained"].push_back(line->constrained ? 1 : 0), data["mapped"].push_back(line->mapped ? 1 : 0);
   }
   data["ends"] = ends.text();
   return data;

@@ -158,7 +158,8 @@ class JsonWriter {
     field("sigma_direction_rad", line.sigma_direction_rad), field("sigma_distance_m", line.sigma_distance_m);
     text_ << ", \"first_t_ns\": " << line.first_t_ns << ", \"last_t_ns\": " << line.last_t_ns;
     text_ << ", \"degenerate\": " << (line.degenerate ? "true" : "false")
-          << ", \"constrained\": " << (line.constrained ? "true" : "false");
+          << ", \"constrained\": " << (line.constrained ? "true" : "false")
+          << ", \"source\": " << (line.mapped ? "\"mapped\"" : "\"tracked\"");
     text_ << ", \"group\": " << line.group << ", \"observations\": [";
     for (std::size_t i = 0; i < line.observations.size(); ++i) {
       text_ << (i == 0 ? "" : ", ") << "{\"keyframe\": " << line.observations[i].keyframe_id;

@@ -75,7 +75,7 @@ TEST_F(GroupsInFiles, AreNamedObjectsInTheOtherForms) {
   EXPECT_THAT(written("map.dae"), HasSubstr("name=\"Lines vertical\""));
   EXPECT_THAT(written("map.obj"), HasSubstr("\no Lines_horizontal_2\n"));
   EXPECT_THAT(written("map.x3d"), HasSubstr("DEF='Lines_vertical'"));
-  EXPECT_THAT(written("map.csv"), HasSubstr(",0,horizontal 1\n"));
+  EXPECT_THAT(written("map.csv"), HasSubstr(",0,horizontal 1,tracked\n"));
   written("map.3Dscene");
   mrpt::opengl::COpenGLScene scene;
   ASSERT_TRUE(scene.loadFromFile(in("map.3Dscene")));

@@ -198,9 +198,9 @@ TEST_F(MapExport, CsvHoldsTheColumnsLosslessly) {
   const std::string text = content(in("map.csv"));
   EXPECT_EQ(text.substr(0, text.find('\n')),
             "id,x0,y0,z0,x1,y1,z1,observations,first_s,last_s,sigma_direction_rad,sigma_distance_m,degenerate,"
-            "constrained,group,group_name");
+            "constrained,group,group_name,source");
   EXPECT_THAT(text, ::testing::HasSubstr("\n10,0.1,-1e-17,3,1e+10,0.3333333333333333,-0,2,1403636579.763555584,-1."
-                                         "500000000,0.001,0.003,0,1,0,group 0\n"));
+                                         "500000000,0.001,0.003,0,1,0,group 0,tracked\n"));
   EXPECT_EQ(std::count(text.begin(), text.end(), '\n'), 3);
 }
 

@@ -15,6 +15,7 @@ inline void addLine(LineMap& map, const Eigen::Vector3d& a, const Eigen::Vector3
   line.group = group;
   line.constrained = group >= 0 && map.lines.size() % 4 == 0;
   line.degenerate = group < 0 && map.lines.size() % 3 == 0;
+  line.mapped = map.lines.size() % 5 == 2;
   line.sigma_direction_rad = 0.001 * (1 + static_cast<double>(map.lines.size() % 7));
   line.sigma_distance_m = 0.003 * (1 + static_cast<double>(map.lines.size() % 11));
   line.first_t_ns = 1403636579763555584, line.last_t_ns = 1403636589763555584;

@@ -5,8 +5,8 @@
 
 #include "BatchProblem.h"
 #include "CarriedView.h"
-#include "KeyframeCameras.h"
 #include "lintel/geometry/Rotation.h"
+#include "lintel/mapping/KeyframeCameras.h"
 
 namespace lintel {
 

@@ -7,8 +7,8 @@
 
 #include <cmath>
 
-#include "KeyframeCameras.h"
 #include "lintel/estimator/StatePriors.h"
+#include "lintel/mapping/KeyframeCameras.h"
 
 namespace lintel {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "KeyframeCameras.h"
+#include "lintel/mapping/KeyframeCameras.h"
 
 #include "lintel/factors/CameraView.h"
 

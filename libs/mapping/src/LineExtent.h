@@ -5,8 +5,8 @@
 #include <utility>
 #include <vector>
 
-#include "KeyframeCameras.h"
 #include "lintel/geometry/Segment.h"
+#include "lintel/mapping/KeyframeCameras.h"
 
 namespace lintel {
 

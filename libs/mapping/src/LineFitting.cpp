@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "LineFitting.h"
+#include "lintel/mapping/LineFitting.h"
 
 #include <algorithm>
 #include <cmath>

@@ -31,4 +31,18 @@ LineJudgement judgeMapLine(const MapParams& params, const KeyframeCameras& camer
   return result;
 }
 
+LineEvidence evidenceOf(const MapParams& params, const KeyframeCameras& cameras, const LineRecord& line) {
+  const LineJudgement judged = judgeMapLine(params, cameras, line);
+  const bool wanted =
+      judged.state == LineState::kKnown || (judged.state == LineState::kDegenerate && params.degenerate_lines == "use");
+  LineEvidence evidence;
+  evidence.known = wanted && judged.stretch && judged.stretch->second - judged.stretch->first >= params.min_length_m;
+  evidence.degenerate = judged.state == LineState::kDegenerate;
+  if (!evidence.known) return evidence;
+  evidence.segment_w = segmentOf(cameras, line, *judged.stretch);
+  evidence.sigma_direction_rad = judged.sigma_direction_rad;
+  evidence.sigma_distance_m = judged.sigma_distance_m;
+  return evidence;
+}
+
 }  // namespace lintel

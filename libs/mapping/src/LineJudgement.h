@@ -4,7 +4,7 @@
 #include <optional>
 #include <utility>
 
-#include "KeyframeCameras.h"
+#include "lintel/mapping/LineEvidence.h"
 #include "lintel/mapping/MapParams.h"
 
 namespace lintel {

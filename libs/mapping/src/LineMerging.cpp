@@ -168,6 +168,7 @@ class LineMerger {
     if (lb.views.size() > la.views.size()) joint.estimate = lb.estimate;
     if (!lb.tie) joint.tie.reset();  // it is enough that one is known from its views
     joint.parallel = la.parallel || lb.parallel;
+    joint.mapped = la.mapped && lb.mapped;
     LineFitParams fit = fit_;
     fit.max_error_px += drift_px;
     if (!fitLine(cameras_, fit, joint) || !explains(joint, la, lb, drift_px)) return false;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "LineFitting.h"
+#include "lintel/mapping/LineFitting.h"
 #include "lintel/mapping/MapParams.h"
 
 namespace lintel {

@@ -5,12 +5,14 @@
 #include "LineGroups.h"
 #include "LineJudgement.h"
 #include "PointsOnLines.h"
+#include "lintel/geometry/Segment.h"
 
 namespace lintel {
 
 namespace {
 
 constexpr double kLeastInliers = 0.9;  // share of a line's views that must still agree
+constexpr double kSigmas = 3;          // by which a line may be off the group whose direction it has
 constexpr double kMoreError_px = 0.3;  // that the tie may add to the mean error
 
 /// Whether the tied line explains the views as well as the free one.
@@ -45,6 +47,29 @@ int tieDegenerateLines(const KeyframeCameras& cameras, const LineFitParams& fit,
     tied += tieToBest(cameras, fit, groups, points, line);
   }
   return tied;
+}
+
+int alignToGroups(const KeyframeCameras& cameras, const LineFitParams& fit, const MapParams& params,
+                  const std::vector<MapGroup>& groups, MapMaterial& material) {
+  int aligned = 0;
+  for (LineRecord& line : material.lines) {
+    if (line.tie || judgeMapLine(params, cameras, line).state != LineState::kKnown) continue;
+    const MapGroup* nearest = nullptr;
+    double least = params.groups.max_angle_rad;
+    for (const MapGroup& group : groups) {
+      const double angle = lineAngle(group.direction_w, line.estimate.direction_w);
+      if (angle > std::min(least, kSigmas * std::hypot(sigmaOf(group), line.estimate.sigmaDirection()))) continue;
+      nearest = &group, least = angle;
+    }
+    if (!nearest) continue;
+    LineRecord tied = line;
+    tied.tie = LineTie{nearest->direction_w, sigmaOf(*nearest), {}};
+    if (!fitLine(cameras, fit, tied) || !viewsAgree(tied, line)) continue;
+    tied.tie.reset();
+    line = std::move(tied);
+    ++aligned;
+  }
+  return aligned;
 }
 
 }  // namespace lintel

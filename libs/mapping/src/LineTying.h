@@ -3,8 +3,8 @@
 
 #include <vector>
 
-#include "KeyframeCameras.h"
-#include "LineFitting.h"
+#include "lintel/mapping/KeyframeCameras.h"
+#include "lintel/mapping/LineFitting.h"
 #include "lintel/mapping/LineMap.h"
 #include "lintel/mapping/MapParams.h"
 
@@ -16,5 +16,10 @@ namespace lintel {
 /// Returns how many were constrained.
 int tieDegenerateLines(const KeyframeCameras& cameras, const LineFitParams& fit, const MapParams& params,
                        const std::vector<MapGroup>& groups, MapMaterial& material);
+
+/// Fits known lines again whose directions agree with a group's within their sigmas, with that direction as one more
+/// measurement; replaced where the views agree. They do not count as tied. Returns how many.
+int alignToGroups(const KeyframeCameras& cameras, const LineFitParams& fit, const MapParams& params,
+                  const std::vector<MapGroup>& groups, MapMaterial& material);
 
 }  // namespace lintel

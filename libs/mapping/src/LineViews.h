@@ -3,7 +3,7 @@
 
 #include <utility>
 
-#include "KeyframeCameras.h"
+#include "lintel/mapping/KeyframeCameras.h"
 #include "lintel/mapping/MapMaterial.h"
 
 namespace lintel {

@@ -110,4 +110,12 @@ void prepareMaterial(const MapParams& params, MapMaterial& material) {
   if (params.degenerate_lines == "constrain") fitting.tie();
 }
 
+void settleLines(const MapParams& params, MapMaterial& material) {
+  MapFitting fitting(params, material);
+  if (params.merge.lines) fitting.mergeLines();
+  if (params.degenerate_lines != "constrain") return;
+  fitting.tie();
+  fitting.align();
+}
+
 }  // namespace lintel

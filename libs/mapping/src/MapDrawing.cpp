@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <algorithm>
 
-#include "LineExtent.h"
-#include "LineFitting.h"
 #include "LineGroups.h"
-#include "LineJudgement.h"
+#include "lintel/mapping/LineEvidence.h"
+#include "lintel/mapping/LineFitting.h"
 #include "lintel/mapping/MapBuilder.h"
 
 namespace lintel {
@@ -33,18 +32,16 @@ class MapDrawer {
   }
 
   std::optional<MapLine> draw(const LineRecord& line) const {
-    const LineJudgement judged = judgeMapLine(params_, cameras_, line);
-    const bool wanted = judged.state == LineState::kKnown ||
-                        (judged.state == LineState::kDegenerate && params_.degenerate_lines == "use");
-    if (!wanted || !judged.stretch || judged.stretch->second - judged.stretch->first < params_.min_length_m)
-      return std::nullopt;
+    const LineEvidence evidence = evidenceOf(params_, cameras_, line);
+    if (!evidence.known) return std::nullopt;
     MapLine result;
-    result.sigma_direction_rad = judged.sigma_direction_rad;
-    result.sigma_distance_m = judged.sigma_distance_m;
+    result.sigma_direction_rad = evidence.sigma_direction_rad;
+    result.sigma_distance_m = evidence.sigma_distance_m;
     result.id = line.id;
-    result.segment_w = segmentOf(cameras_, line, *judged.stretch);
+    result.segment_w = evidence.segment_w;
+    result.mapped = line.mapped;
     result.constrained = line.tie.has_value();
-    result.degenerate = result.constrained || judged.state == LineState::kDegenerate;
+    result.degenerate = result.constrained || evidence.degenerate;
     for (const LineView& v : line.views)
       if (v.inlier) result.observations.push_back(observationOf(v, result.segment_w));
     result.first_t_ns = timeOf(result.observations.front().keyframe_id);

@@ -27,22 +27,31 @@ void MapFitting::fitAll() {
 int MapFitting::merge(double drift_px) {
   int merged = 0;
   if (params_.merge.points) merged += mergePoints(cameras_, point_, params_.merge, material_.points);
-  if (params_.merge.lines) merged += mergeLines(cameras_, line_, params_.merge, drift_px, material_.lines);
+  if (params_.merge.lines) merged += mergeLines(drift_px);
   return merged;
+}
+
+int MapFitting::mergeLines(double drift_px) {
+  return lintel::mergeLines(cameras_, line_, params_.merge, drift_px, material_.lines);
 }
 
 int MapFitting::join(const std::vector<PointJoin>& joins, double most_px, double sigma_px) {
   return joinPoints(cameras_, point_, joins, most_px, sigma_px, material_.points);
 }
 
-void MapFitting::tie() {
+std::vector<MapGroup> MapFitting::groups() const {
   const LineMap map = drawMap(params_, material_);
   const std::vector<bool> certain = certainGroups(map);
   std::vector<MapGroup> groups;
   for (std::size_t g = 0; g < certain.size(); ++g)
     if (certain[g]) groups.push_back(map.groups[g]);
-  if (tieDegenerateLines(cameras_, line_, params_, groups, material_) > 0 && params_.merge.lines)
-    mergeLines(cameras_, line_, params_.merge, 0, material_.lines);
+  return groups;
 }
+
+void MapFitting::tie() {
+  if (tieDegenerateLines(cameras_, line_, params_, groups(), material_) > 0 && params_.merge.lines) mergeLines();
+}
+
+void MapFitting::align() { alignToGroups(cameras_, line_, params_, groups(), material_); }
 
 }  // namespace lintel

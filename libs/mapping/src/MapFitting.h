@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "LineFitting.h"
 #include "PointFitting.h"
+#include "lintel/mapping/LineFitting.h"
+#include "lintel/mapping/LineMap.h"
 #include "lintel/mapping/MapParams.h"
 #include "lintel/mapping/PointJoin.h"
 
@@ -19,15 +20,23 @@ class MapFitting {
   /// Joins estimates of the same landmark; returns how many were joined to others. `drift_px`: see mergeLines.
   int merge(double drift_px = 0);
 
+  /// The same, of lines only.
+  int mergeLines(double drift_px = 0);
+
   /// See joinPoints().
   int join(const std::vector<PointJoin>& joins, double most_px, double sigma_px);
 
   /// Ties degenerate lines to groups of parallel lines whose directions are known.
   void tie();
 
+  /// See alignToGroups().
+  void align();
+
   const KeyframeCameras& cameras() const { return cameras_; }
 
  private:
+  std::vector<MapGroup> groups() const;
+
   const MapParams& params_;
   MapMaterial& material_;
   KeyframeCameras cameras_;

@@ -13,7 +13,7 @@ constexpr std::size_t kKeyframeSize = 8 + 8 + 7 * 8 + 9 * 8, kPointObservationSi
                       kLineSize = 8 + 6 * 8 + 16 + 16 + 1 + 4 + 8, kTrajectorySize = 8 + 7 * 8,
                       kGroupSize = 8 + 3 * 8 + 8;
 
-enum LineFlag : std::uint8_t { kDegenerate = 1, kConstrained = 2 };
+enum LineFlag : std::uint8_t { kDegenerate = 1, kConstrained = 2, kMapped = 4 };
 
 // One list of a rig's numbers serves both directions, so that they cannot differ.
 template <class RigT, class Integer, class Number>
@@ -100,7 +100,8 @@ void encodeLines(const LineMap& map, ByteWriter& out) {
     out.u64(line.id), out.vec3(line.segment_w.start), out.vec3(line.segment_w.end);
     out.f64(line.sigma_direction_rad), out.f64(line.sigma_distance_m);
     out.i64(line.first_t_ns), out.i64(line.last_t_ns);
-    out.u8(static_cast<std::uint8_t>((line.degenerate ? kDegenerate : 0) | (line.constrained ? kConstrained : 0)));
+    out.u8(static_cast<std::uint8_t>((line.degenerate ? kDegenerate : 0) | (line.constrained ? kConstrained : 0) |
+                                     (line.mapped ? kMapped : 0)));
     out.i32(line.group), out.u64(line.observations.size());
     for (const MapLineObservation& seen : line.observations)
       out.u64(seen.keyframe_id), out.vec2(seen.start_px), out.vec2(seen.end_px);
@@ -115,6 +116,7 @@ void decodeLines(ByteReader& in, LineMap& map) {
     line.first_t_ns = in.i64(), line.last_t_ns = in.i64();
     const std::uint8_t flags = in.u8();
     line.degenerate = (flags & kDegenerate) != 0, line.constrained = (flags & kConstrained) != 0;
+    line.mapped = (flags & kMapped) != 0;
     line.group = in.i32();
     line.observations.resize(in.count(kLineObservationSize));
     for (MapLineObservation& seen : line.observations) {

@@ -3,7 +3,7 @@
 
 #include <vector>
 
-#include "KeyframeCameras.h"
+#include "lintel/mapping/KeyframeCameras.h"
 
 namespace lintel {
 

@@ -125,5 +125,41 @@ TEST_F(LineTyingTest, AWellDeterminedLineIsNotConstrained) {
   EXPECT_EQ(tied_, 1);
 }
 
+/// A known line whose views are off by a noise that turns it.
+class AlignToGroups : public LineTyingTest {
+ protected:
+  LineRecord aligned(const Segment3& segment, const Eigen::Vector3d& direction_w) {
+    LineRecord line = lineOf(material_, 1, segment);
+    for (LineView& view : line.views) view.end_px += Eigen::Vector2d(0.5, 0);
+    EXPECT_TRUE(fitLine(cameras_, fit_, line));
+    EXPECT_EQ(stateOf(line), LineState::kKnown);
+    MapGroup group;
+    group.direction_w = direction_w.normalized();
+    material_.lines = {line};
+    free_ = line;
+    aligned_ = alignToGroups(cameras_, fit_, params_, {group}, material_);
+    return material_.lines[0];
+  }
+
+  LineRecord free_;
+  int aligned_ = 0;
+  const Segment3 upright_{{0.8, -0.3, 4}, {0.83, 0.3, 4.05}};
+};
+
+TEST_F(AlignToGroups, ALineThatMayBeParallelTakesTheDirectionWithItsWeight) {
+  const LineRecord line = aligned(upright_, upright_.direction());
+  ASSERT_EQ(aligned_, 1);
+  EXPECT_LT(lineAngle(line.estimate.direction_w, upright_.direction()),
+            0.7 * lineAngle(free_.estimate.direction_w, upright_.direction()));
+  EXPECT_LE(line.estimate.sigmaDirection(), 0.0051) << "that of the group";
+  EXPECT_FALSE(line.tie) << "it is known without";
+}
+
+TEST_F(AlignToGroups, ALineThatIsNotParallelStays) {
+  const LineRecord line = aligned(upright_, {0.2, 1, 0.1});
+  EXPECT_EQ(aligned_, 0);
+  EXPECT_EQ(line.estimate.direction_w, free_.estimate.direction_w);
+}
+
 }  // namespace
 }  // namespace lintel

@@ -47,7 +47,7 @@ LineMap sampleMap() {
     for (std::uint64_t k = 0; k < i % 4; ++k) map.points.back().observations.push_back({k, vec2()});
   }
   for (std::uint64_t i = 0; i < 20; ++i) {
-    MapLine line{i + 100, {vec(), vec()}, 0.01, 0.02, 5, 6, i % 2 == 0, i % 3 == 0, int(i % 4) - 1, {}};
+    MapLine line{i + 100, {vec(), vec()}, 0.01, 0.02, 5, 6, i % 2 == 0, i % 3 == 0, i == 7, int(i % 4) - 1, {}};
     for (std::uint64_t k = 0; k < i % 5; ++k) line.observations.push_back({k, vec2(), vec2()});
     map.lines.push_back(line);
   }
@@ -99,6 +99,8 @@ TEST_F(MapFile, EveryValueReturnsToTheBit) {
   EXPECT_EQ(back.lines[9].observations[3].end_px, map.lines[9].observations[3].end_px);
   EXPECT_EQ(back.lines[9].constrained, true);
   EXPECT_EQ(back.lines[9].degenerate, false);
+  EXPECT_EQ(back.lines[9].mapped, false);
+  EXPECT_EQ(back.lines[7].mapped, true);
   EXPECT_EQ(back.lines[8].group, -1);
   EXPECT_EQ(back.lines[8].last_t_ns, 6);
   EXPECT_EQ(back.trajectory[29].first, 1403636579763555584 + 29);
@@ -205,7 +207,7 @@ TEST_F(MapFile, TheBytesOfThisVersionAreSettled) {
   map.source = "a";
   map.keyframes = {{3, 4, {}, {1, 2, 3}, {4, 5, 6}, {7, 8, 9}}};
   map.points = {{5, {1, 2, 3}, 0.5, 6, 7, {{3, {8, 9}}}}};
-  map.lines = {{8, {{1, 2, 3}, {4, 5, 6}}, 0.25, 0.5, 9, 10, true, false, 0, {{3, {1, 2}, {3, 4}}}}};
+  map.lines = {{8, {{1, 2, 3}, {4, 5, 6}}, 0.25, 0.5, 9, 10, true, false, false, 0, {{3, {1, 2}, {3, 4}}}}};
   map.groups = {{"vertical", {0, 0, 1}, 0.125}};
   map.trajectory = {{11, {}}};
   writeMap(map, path_);

@@ -4,6 +4,7 @@
 #include <cstdio>
 
 #include "lintel/mapping/LineSpacing.h"
+#include "lintel/pipeline/RunCosts.h"
 
 namespace lintel {
 
@@ -14,7 +15,12 @@ EstimationStage::EstimationStage(const Rig& rig, const Configuration& configurat
       map_(rig, configuration.map),
       loops_(rig, configuration.loops),
       refinement_(rig, configuration.estimator, configuration.map, configuration.refinement),
-      result_(result) {}
+      result_(result) {
+  checkRanges(configuration.densification, "densification.");
+  if (configuration.refinement.enabled && configuration.densification.enabled &&
+      configuration.tracking.features == "points_lines")
+    edges_.emplace(rig, configuration.densification);
+}
 
 WindowUpdate EstimationStage::process(const TrackedFrame& frame) {
   OdometryStatistics& s = result_.statistics;
@@ -32,11 +38,12 @@ WindowUpdate EstimationStage::process(const TrackedFrame& frame) {
     const StageClock::Scope scope(s.loops);
     loops_.add(frame.step.frame, frame.tracks.points, update);
   }
+  if (edges_) edges_->add(frame.step.frame, update, s.edges);
   if (update.hasPose()) result_.trajectory.push_back({update.t_ns, update.T_w_b});
   return update;
 }
 
-void EstimationStage::finish(const RefinementProgress& loops_progress, const RefinementProgress& progress) {
+void EstimationStage::finish(const FinishOptions& options) {
   const CalibrationEstimate calibration = result_.window_calibration = estimator_.calibration();
   result_.rig = rig_;
   result_.rig.camera = calibration.camera;
@@ -45,7 +52,7 @@ void EstimationStage::finish(const RefinementProgress& loops_progress, const Ref
   result_.time_offset_s = calibration.time_offset_s;
   map_.add(estimator_.finish());
   map_.setCalibration(result_.rig, result_.time_offset_s);
-  finishMap(loops_progress, progress);
+  finishMap(options);
   OdometryStatistics& s = result_.statistics;
   s.keyframes = result_.map.keyframes.size();
   if (s.window_frames == 0) return;
@@ -56,22 +63,29 @@ void EstimationStage::finish(const RefinementProgress& loops_progress, const Ref
     *mean /= n;
 }
 
-void EstimationStage::refineMap(MapMaterial& material, const RefinementProgress& loops_progress,
-                                const RefinementProgress& progress) {
+void EstimationStage::refineMap(MapMaterial& material, const FinishOptions& options) {
   {
     const StageClock::Scope scope(result_.statistics.loops);
-    result_.loops = loops_.find(material, loops_progress);
+    result_.loops = loops_.find(material, options.loops);
   }
   const StageClock::Scope scope(result_.statistics.refinement);
-  result_.refinement = refinement_.refine(material, progress, joinsOf(result_.loops));
+  result_.refinement = refinement_.refine(material, options.refinement, joinsOf(result_.loops));
   if (result_.refinement.accepted) loops_.measureDrift(material, result_.loops);
 }
 
-void EstimationStage::finishMap(const RefinementProgress& loops_progress, const RefinementProgress& progress) {
+void EstimationStage::densifyMap(MapMaterial& material, const FinishOptions& options) {
+  const double before_ms = processTimeMs();  // it takes several threads
+  result_.densification = densify(configuration_.densification, configuration_.map, edges_->edges(), material,
+                                  options.threads, options.densification);
+  settleLines(configuration_.map, material);
+  result_.statistics.densification.add(processTimeMs() - before_ms);
+}
+
+void EstimationStage::finishMap(const FinishOptions& options) {
   MapMaterial material = map_.material();
   const bool refine = configuration_.refinement.enabled && !material.keyframes.empty();
   if (refine && !result_.cancelled) {
-    refineMap(material, loops_progress, progress);
+    refineMap(material, options);
   } else {
     const StageClock::Scope scope(result_.statistics.map_fitting);
     if (refine) result_.refinement.verdict = "not refined: the run was cancelled";
@@ -82,6 +96,7 @@ void EstimationStage::finishMap(const RefinementProgress& loops_progress, const 
     result_.time_offset_s = material.time_offset_s;
     for (const auto& [t_ns, T_w_b] : material.trajectory) result_.refined_trajectory.push_back({t_ns, T_w_b});
   }
+  if (edges_ && !result_.cancelled) densifyMap(material, options);
   result_.map = drawMap(configuration_.map, material);
   result_.map.configuration = writeConfiguration(configuration_);
   result_.lines_beside = spaceLines(configuration_.map, result_.map);

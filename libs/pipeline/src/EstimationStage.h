@@ -1,12 +1,19 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include "EdgeStage.h"
 #include "LoopStage.h"
 #include "TrackingStage.h"
 #include "lintel/mapping/MapBuilder.h"
 #include "lintel/pipeline/Odometry.h"
 
 namespace lintel {
+
+/// How the map is made. Progress is called with the share that is done; false ends it.
+struct FinishOptions {
+  int threads = 1;
+  std::function<bool(double)> loops, refinement, densification;
+};
 
 /// Estimates a pose for every tracked frame, collects the map's material, and makes the map of it after the last frame.
 class EstimationStage {
@@ -17,11 +24,12 @@ class EstimationStage {
   WindowUpdate process(const TrackedFrame& frame);
 
   /// Looks for places seen again and refines, unless the result is marked as cancelled, and draws the map.
-  void finish(const RefinementProgress& loops_progress, const RefinementProgress& progress);
+  void finish(const FinishOptions& options);
 
  private:
-  void finishMap(const RefinementProgress& loops_progress, const RefinementProgress& progress);
-  void refineMap(MapMaterial& material, const RefinementProgress& loops_progress, const RefinementProgress& progress);
+  void finishMap(const FinishOptions& options);
+  void refineMap(MapMaterial& material, const FinishOptions& options);
+  void densifyMap(MapMaterial& material, const FinishOptions& options);
   void count(const WindowUpdate& update);
   void countWindow(const WindowUpdate& update);
   void countBlind(bool blind, double t_s);
@@ -31,6 +39,7 @@ class EstimationStage {
   Estimator estimator_;
   MapBuilder map_;
   LoopStage loops_;
+  std::optional<EdgeStage> edges_;  ///< when the map is densified
   const BatchRefinement refinement_;
   OdometryResult& result_;
   bool was_blind_ = false;

@@ -138,7 +138,8 @@ OdometryResult runOdometry(Recording& recording, const Configuration& configurat
       return share >= 1 || !cancelled();
     };
   };
-  estimation.finish(progressOf(RunStage::kLoops), progressOf(RunStage::kRefinement));
+  estimation.finish({options.threads, progressOf(RunStage::kLoops), progressOf(RunStage::kRefinement),
+                     progressOf(RunStage::kDensification)});
   result.statistics.front_end = tracking.statistics();
   addClock(search, result);
   if (const std::string noise = check.noiseRemark(); !noise.empty())

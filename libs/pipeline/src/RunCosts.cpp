@@ -17,10 +17,15 @@ double processTimeMs() {
 }
 
 std::vector<std::pair<std::string, double>> RunCosts::breakdown(const OdometryStatistics& s, double process_ms) const {
-  std::vector<std::pair<std::string, double>> stages{
-      {"decoding", s.decoding.sumMs()},    {"tracking", s.tracking.sumMs()}, {"estimation", s.estimation.sumMs()},
-      {"mapping", s.mapping.sumMs()},      {"loops", s.loops.sumMs()},       {"map fitting", s.map_fitting.sumMs()},
-      {"refinement", s.refinement.sumMs()}};
+  std::vector<std::pair<std::string, double>> stages{{"decoding", s.decoding.sumMs()},
+                                                     {"tracking", s.tracking.sumMs()},
+                                                     {"estimation", s.estimation.sumMs()},
+                                                     {"mapping", s.mapping.sumMs()},
+                                                     {"loops", s.loops.sumMs()},
+                                                     {"map fitting", s.map_fitting.sumMs()},
+                                                     {"refinement", s.refinement.sumMs()},
+                                                     {"edges", s.edges.sumMs()},
+                                                     {"densification", s.densification.sumMs()}};
   stages.insert(stages.end(), once_ms.begin(), once_ms.end());
   double booked_ms = 0;
   for (const auto& stage : stages) booked_ms += stage.second;

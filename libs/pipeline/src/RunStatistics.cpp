@@ -30,10 +30,15 @@ Json stageJson(std::vector<double> ms) {
 }
 
 Json stagesJson(const OdometryStatistics& s) {
-  Json stages{{"decoding", stageJson(s.decoding.ms())},     {"tracking", stageJson(s.tracking.ms())},
-              {"estimation", stageJson(s.estimation.ms())}, {"mapping", stageJson(s.mapping.ms())},
-              {"loops", stageJson(s.loops.ms())},           {"map fitting", stageJson(s.map_fitting.ms())},
-              {"refinement", stageJson(s.refinement.ms())}};
+  Json stages{{"decoding", stageJson(s.decoding.ms())},
+              {"tracking", stageJson(s.tracking.ms())},
+              {"estimation", stageJson(s.estimation.ms())},
+              {"mapping", stageJson(s.mapping.ms())},
+              {"loops", stageJson(s.loops.ms())},
+              {"map fitting", stageJson(s.map_fitting.ms())},
+              {"refinement", stageJson(s.refinement.ms())},
+              {"edges", stageJson(s.edges.ms())},
+              {"densification", stageJson(s.densification.ms())}};
   for (const auto& [name, times] : s.front_end.stages)
     stages["tracking: " + name] = stageJson(std::vector<double>(times.ms.begin(), times.ms.end()));
   return stages;
@@ -97,6 +102,14 @@ Json refinementJson(const OdometryResult& result) {
           {"imu_sigmas", {r.imu_before, r.imu_after}},
           {"moved_m", r.moved_m},
           {"turned_rad", r.turned_rad}};
+}
+
+Json densificationJson(const DensifyReport& d) {
+  return {{"images", d.images},
+          {"edges", d.segments},
+          {"views_added", d.views},
+          {"candidates", d.candidates},
+          {"lines", d.lines}};
 }
 
 Json cameraJson(const Camera& c, const Pose& T_b_c, double time_offset_s, double readout_s) {
@@ -165,6 +178,7 @@ std::string statisticsJson(const OdometryResult& result, const Rig& given, const
                   {"map_lines_beside", result.lines_beside},
                   {"loops", loopsJson(result)},
                   {"refinement", refinementJson(result)},
+                  {"densification", densificationJson(result.densification)},
                   {"calibration", calibrationJson(result, given)},
                   {"cpu_ms_per_frame", s.frames > 0 ? process_ms / static_cast<double>(s.frames) : 0},
                   {"cpu_ms", cpuJson(s, costs, process_ms)},

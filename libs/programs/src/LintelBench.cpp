@@ -2,10 +2,7 @@
 #include "lintel/programs/LintelBench.h"
 
 #include <algorithm>
-#include <atomic>
 #include <chrono>
-#include <condition_variable>
-#include <exception>
 #include <filesystem>
 #include <mutex>
 #include <ostream>
@@ -19,6 +16,7 @@
 #include "lintel/bench/BenchTables.h"
 #include "lintel/core/AtomicFile.h"
 #include "lintel/core/ChildProcess.h"
+#include "lintel/core/ParallelFor.h"
 #include "lintel/reporting/Progress.h"
 
 namespace lintel {
@@ -26,36 +24,6 @@ namespace lintel {
 namespace {
 
 namespace fs = std::filesystem;
-
-/// Several workers take jobs from one list; one thread at a time reports.
-class JobPool {
- public:
-  using Work = std::function<void(const BenchJob&)>;
-
-  JobPool(const std::vector<BenchJob>& jobs, int workers, const Work& work) {
-    const auto worker = [&] {
-      for (std::size_t i = next_++; i < jobs.size(); i = next_++) {
-        try {
-          work(jobs[i]);
-        } catch (...) {
-          const std::lock_guard<std::mutex> lock(mutex_);
-          if (!failure_) failure_ = std::current_exception();
-          next_ = jobs.size();
-        }
-      }
-    };
-    std::vector<std::thread> threads;
-    threads.reserve(static_cast<std::size_t>(workers));
-    for (int i = 0; i < workers; ++i) threads.emplace_back(worker);
-    for (std::thread& thread : threads) thread.join();
-    if (failure_) std::rethrow_exception(failure_);
-  }
-
- private:
-  std::atomic<std::size_t> next_{0};
-  std::mutex mutex_;
-  std::exception_ptr failure_;
-};
 
 class LintelBench {
  public:
@@ -176,7 +144,8 @@ class LintelBench {
     Progress progress(err_, progressStyleFor(err_, quiet_), "running", "runs", jobs_.size());
     std::mutex mutex;
     std::size_t done = jobs_.size() - missing.size();
-    JobPool(missing, workers_, [&](const BenchJob& job) {
+    parallelFor(missing.size(), workers_, [&](std::size_t i) {
+      const BenchJob& job = missing[i];
       const auto start = std::chrono::steady_clock::now();
       stop.check();
       const JobOutcome outcome = runs.run(job, retry_failed_);

@@ -190,7 +190,9 @@ class LintelVio {
       }
       if (shown != run.stage) {
         if (afterwards) afterwards->clear();
-        const char* what = run.stage == RunStage::kLoops ? "looking for places seen before" : "refining";
+        const char* what = run.stage == RunStage::kLoops        ? "looking for places seen before"
+                           : run.stage == RunStage::kRefinement ? "refining"
+                                                                : "searching lines";
         afterwards.emplace(err_, progressStyleFor(err_, quiet_), what, "%", run.total);
         shown = run.stage;
       }

@@ -6,8 +6,8 @@
 #include <mutex>
 #include <stdexcept>
 
-#include "FrameLoop.h"
 #include "Motion.h"
+#include "lintel/core/ParallelFor.h"
 #include "lintel/geometry/LensNames.h"
 #include "lintel/geometry/Rotation.h"
 #include "lintel/simulation/EurocRig.h"
@@ -149,7 +149,7 @@ class Simulation::Impl {
       const std::lock_guard<std::mutex> lock(seen_mutex);
       for (std::size_t k = 0; k < visible.size(); ++k) seen[k] += visible[k] ? 1 : 0;
     };
-    forEachFrame(frames_.size(), params_.threads, takeFrame, progress);
+    parallelFor(frames_.size(), params_.threads, takeFrame, progress);
     std::vector<std::int64_t> stamps;
     for (const std::size_t frame : frames_) stamps.push_back(stamp(frame));
     writer.writeImageList(stamps);

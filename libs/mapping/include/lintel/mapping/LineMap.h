@@ -51,6 +51,7 @@ struct MapLine {
   std::int64_t first_t_ns = 0, last_t_ns = 0;
   bool degenerate = false;                       ///< its own observations do not determine direction or depth
   bool constrained = false;                      ///< direction taken from a group of parallel lines
+  bool mapped = false;                           ///< found in images with the poses known; false: tracked
   int group = -1;                                ///< place in LineMap::groups, -1 = none
   std::vector<MapLineObservation> observations;  ///< ascending keyframe id
 };

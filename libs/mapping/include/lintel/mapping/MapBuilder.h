@@ -37,6 +37,10 @@ class MapBuilder {
 /// landmark.
 void prepareMaterial(const MapParams& params, MapMaterial& material);
 
+/// After lines were added to a prepared material: joins those that are estimates of the same edge, and constrains
+/// degenerate ones.
+void settleLines(const MapParams& params, MapMaterial& material);
+
 /// The map of what has enough evidence: enough views that agree, known well enough, of some length. Ends are where they
 /// were seen; parallel groups are named.
 LineMap drawMap(const MapParams& params, const MapMaterial& material);

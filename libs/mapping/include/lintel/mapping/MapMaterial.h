@@ -70,7 +70,8 @@ struct LineRecord {
   LineEstimate estimate;
   double error_px = 0;         ///< mean distance of the inliers' ends from the projected line
   double distance_m = 0;       ///< from which it was seen, median
-  bool parallel = false;       ///< the window found it parallel to others to the end
+  bool parallel = false;       ///< may be parallel to others: where its views leave it open, these may make it known
+  bool mapped = false;         ///< found with the poses known, not tracked
   std::optional<LineTie> tie;  ///< where its own views do not determine direction or position
   std::vector<LineView> views;
 };

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "lintel/densification/DensifyParams.h"
 #include "lintel/estimator/EstimatorParams.h"
 #include "lintel/mapping/BatchRefinement.h"
 #include "lintel/mapping/MapParams.h"
@@ -20,6 +21,7 @@ struct Configuration {
   MapParams map;
   PlaceParams loops;
   RefinementParams refinement;
+  DensifyParams densification;
 
   template <class F>
   void fields(F&& field) {
@@ -29,6 +31,7 @@ struct Configuration {
     field("map", map);
     field("loops", loops);
     field("refinement", refinement);
+    field("densification", densification);
   }
 };
 

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "lintel/densification/Densifier.h"
 #include "lintel/estimator/Estimator.h"
 #include "lintel/mapping/BatchRefinement.h"
 #include "lintel/mapping/LineMap.h"
@@ -42,7 +43,8 @@ struct OdometryStatistics {
   std::string last_wait;                               ///< what initialisation waited for last
   StageClock decoding, tracking, estimation, mapping;  ///< a value a frame
   StageClock loops;                                    ///< a value a described frame, and one for the search
-  StageClock map_fitting, refinement;                  ///< once, after the last frame
+  StageClock edges;                                    ///< a value a keyframe: the search for edges in its image
+  StageClock map_fitting, refinement, densification;   ///< once, after the last frame
   FrontEndStatistics front_end;
 };
 
@@ -59,6 +61,7 @@ struct OdometryResult {
   std::vector<OdometryPose> refined_trajectory;  ///< empty when there was no refinement or it was not accepted
   LoopResult loops;
   RefinementReport refinement;
+  DensifyReport densification;
   LineMap map;                             ///< holds the configuration it was made with
   int lines_beside = 0;                    ///< known, but beside better seen ones: see map.spacing
   Rig rig;                                 ///< as refined
@@ -74,7 +77,7 @@ struct OdometryResult {
 };
 
 /// The parts of a run that take time.
-enum class RunStage { kFrames, kLoops, kRefinement };
+enum class RunStage { kFrames, kLoops, kRefinement, kDensification };
 
 /// How much of a stage is done: frames of those that the recording is known to have (else `total` is 0), or percent of
 /// the search for places seen again and of the refinement.

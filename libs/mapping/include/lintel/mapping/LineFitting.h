@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "KeyframeCameras.h"
+#include "lintel/mapping/KeyframeCameras.h"
 #include "lintel/mapping/MapMaterial.h"
 
 namespace lintel {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "FrameLoop.h"
+#include "lintel/core/ParallelFor.h"
 
 #include <algorithm>
 #include <atomic>
@@ -10,8 +10,8 @@
 
 namespace lintel {
 
-void forEachFrame(std::size_t count, int threads, const std::function<void(std::size_t)>& work,
-                  const std::function<void(std::size_t)>& done) {
+void parallelFor(std::size_t count, int threads, const std::function<void(std::size_t)>& work,
+                 const std::function<void(std::size_t)>& done) {
   std::atomic<std::size_t> next{0};
   std::mutex mutex;
   std::exception_ptr failure;

@@ -1,0 +1,92 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "CommonViews.h"
+
+#include <algorithm>
+#include <map>
+#include <unordered_map>
+
+#include "lintel/core/Quantiles.h"
+
+namespace lintel {
+
+namespace {
+
+constexpr std::size_t kLeastShared = 8;            // points
+constexpr double kLeastShare = 0.1;                // of the points of the view that sees fewer
+constexpr double kNearest = 0.4, kFarthest = 2.5;  // of the nearest and farthest points
+
+/// Which views see each point, and each view's points' distances.
+struct Seen {
+  std::vector<std::vector<std::size_t>> by_point;
+  std::vector<std::vector<double>> distances_m;  // by view
+};
+
+Seen seenBy(const MapMaterial& material, const std::vector<SegmentView>& views) {
+  std::unordered_map<FrameId, std::size_t> place;
+  for (std::size_t v = 0; v < views.size(); ++v) place.emplace(views[v].keyframe, v);
+  Seen seen;
+  seen.distances_m.resize(views.size());
+  for (const PointRecord& point : material.points) {
+    if (!point.known) continue;
+    std::vector<std::size_t> by;
+    for (const PointView& v : point.views) {
+      const auto found = place.find(v.keyframe);
+      if (!v.inlier || found == place.end()) continue;
+      by.push_back(found->second);
+      seen.distances_m[found->second].push_back((point.p_w - views[found->second].p_w_c).norm());
+    }
+    seen.by_point.push_back(std::move(by));
+  }
+  return seen;
+}
+
+/// Of `among` so many that each is as far as possible from those before, beginning with `from`.
+std::vector<std::size_t> spread(const std::vector<SegmentView>& views, std::size_t from,
+                                const std::vector<std::size_t>& among, std::size_t most) {
+  std::vector<double> distance(among.size(), 1e300);
+  std::vector<std::size_t> chosen;
+  std::size_t last = from;
+  while (chosen.size() < std::min(most, among.size())) {
+    std::size_t best = 0;
+    for (std::size_t i = 0; i < among.size(); ++i) {
+      if (distance[i] < 0) continue;
+      distance[i] = std::min(distance[i], (views[among[i]].p_w_c - views[last].p_w_c).norm());
+      if (distance[best] < 0 || distance[i] > distance[best]) best = i;
+    }
+    last = among[best];
+    distance[best] = -1;
+    chosen.push_back(last);
+  }
+  return chosen;
+}
+
+}  // namespace
+
+std::vector<CommonViews> findCommonViews(const MapMaterial& material, std::size_t most,
+                                         std::vector<SegmentView>& views) {
+  Seen seen = seenBy(material, views);
+  std::vector<std::map<std::size_t, std::size_t>> shared(views.size());
+  for (const std::vector<std::size_t>& by : seen.by_point)
+    for (const std::size_t a : by)
+      for (const std::size_t b : by)
+        if (a != b) ++shared[a][b];
+  std::vector<CommonViews> common(views.size());
+  for (std::size_t v = 0; v < views.size(); ++v) {
+    std::vector<double>& distances = seen.distances_m[v];
+    if (distances.size() < kLeastShared) continue;
+    std::sort(distances.begin(), distances.end());
+    views[v].near_m = kNearest * distances[distances.size() / 20];
+    views[v].far_m = kFarthest * distances[distances.size() * 19 / 20];
+    std::vector<std::size_t> among;
+    for (const auto& [other, n] : shared[v]) {
+      const auto fewer = static_cast<double>(std::min(distances.size(), seen.distances_m[other].size()));
+      if (n >= kLeastShared && static_cast<double>(n) >= kLeastShare * fewer) among.push_back(other);
+    }
+    common[v].chosen = spread(views, v, among, most);
+    common[v].all = std::move(among);
+    common[v].all.insert(std::lower_bound(common[v].all.begin(), common[v].all.end(), v), v);
+  }
+  return common;
+}
+
+}  // namespace lintel

@@ -1,0 +1,209 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "lintel/densification/Densifier.h"
+
+#include <algorithm>
+#include <cmath>
+#include <set>
+
+#include "CommonViews.h"
+#include "LineSearch.h"
+#include "lintel/core/ParallelFor.h"
+#include "lintel/core/Quantiles.h"
+#include "lintel/mapping/LineEvidence.h"
+#include "lintel/mapping/LineFitting.h"
+
+namespace lintel {
+
+namespace {
+
+constexpr int kPasses = 2;               // of adding edges to a line: with the first ones more of it is known
+constexpr std::size_t kLeastKnown = 20;  // lines of the map whose errors say what is usual
+constexpr double kUnusualShare = 0.4;    // of the map's limit, for the errors of lines where too few are known
+
+constexpr double kFittedShare = 0.5;  // of the tolerance: what a fitted line needs less than a candidate
+constexpr double kChanceMore = 0.15;  // images: what chance may cover although it was not seen to
+
+/// An edge of an image.
+struct Sighting {
+  std::size_t view, segment;
+};
+
+/// The search in one material.
+class Densifier {
+ public:
+  Densifier(const DensifyParams& params, const MapParams& map, const ImageEdges& edges, MapMaterial& material)
+      : params_(params), map_(map), material_(material), cameras_(material) {
+    fit_.max_error_px = map.view_max_error_px;
+    fit_.min_depth_m = map.min_depth_m;
+    for (const RetiredKeyframe& keyframe : material.keyframes)
+      if (const auto found = edges.find(keyframe.t_ns); found != edges.end()) {
+        place_.emplace(keyframe.id, views_.size());
+        views_.emplace_back(cameras_, keyframe.id, found->second);
+      }
+    common_ = findCommonViews(material, static_cast<std::size_t>(params.views), views_);
+    for (const SegmentView& view : views_) report_.segments += view.size();
+    report_.images = views_.size();
+    for (const LineRecord& line : material.lines) next_id_ = std::max(next_id_, line.id + 1);
+  }
+
+  DensifyReport run(int threads, const DensifyProgress& progress) {
+    takeKnown();
+    std::vector<std::optional<LineCandidate>> candidates;
+    for (std::size_t i = 0; i < views_.size(); ++i) {
+      if (progress && !progress(static_cast<double>(i) / static_cast<double>(views_.size()))) break;
+      const std::size_t n = common_[i].chosen.empty() ? 0 : views_[i].size();
+      candidates.assign(n, std::nullopt);
+      parallelFor(n, threads, [&](std::size_t s) {
+        if (!views_[i].taken[s]) candidates[s] = searchLine(params_, views_, common_[i].chosen, i, s);
+      });
+      for (std::size_t s = 0; s < n; ++s)
+        if (candidates[s] && !views_[i].taken[s]) addLine(i, candidates[s]->segment_w);
+    }
+    return report_;
+  }
+
+ private:
+  /// Edges of `among` that lie on a segment in space.
+  std::vector<Sighting> sightings(const std::vector<std::size_t>& among, const Segment3& segment_w,
+                                  bool taken_too) const {
+    std::vector<Sighting> seen;
+    for (const std::size_t v : among)
+      for (const std::size_t s :
+           supportOf(views_[v], seenSegment(views_[v], segment_w), params_.tolerance_px, taken_too).by)
+        seen.push_back({v, s});
+    return seen;
+  }
+
+  void take(const std::vector<Sighting>& seen) {
+    for (const Sighting& s : seen) views_[s.view].taken[s.segment] = 1;
+  }
+
+  LineView viewOf(const Sighting& s, TrackId track) const {
+    const SegmentView& view = views_[s.view];
+    const EdgeSegment& edge = view.segments[s.segment];
+    return {view.keyframe, track, edge.start_px, edge.end_px, static_cast<float>(edge.sigma_px), true};
+  }
+
+  /// Lines that the map has get the edges on them as views where tracking had none; these edges are no candidates.
+  void takeKnown() {
+    std::vector<double> errors_px;
+    for (LineRecord& line : material_.lines) {
+      LineEvidence evidence = evidenceOf(map_, cameras_, line);
+      if (!evidence.known) continue;
+      errors_px.push_back(line.error_px);
+      const std::vector<std::size_t> among = viewsAround(line);
+      for (int pass = 0; pass < kPasses; ++pass) {
+        if (!extend(line, sightings(among, evidence.segment_w, true))) break;
+        evidence = evidenceOf(map_, cameras_, line);
+      }
+      take(sightings(among, evidence.segment_w, true));
+    }
+    most_error_px_ = kUnusualShare * map_.max_error_px;
+    if (errors_px.size() >= kLeastKnown)
+      most_error_px_ = std::min(map_.max_error_px, params_.max_error_ratio * upperQuantile(errors_px, 0.95));
+  }
+
+  /// Those that share points with views of the line, or with the first searched after one of them.
+  std::vector<std::size_t> viewsAround(const LineRecord& line) const {
+    std::set<std::size_t> at, around;
+    for (const LineView& v : line.views)
+      if (const auto found = place_.lower_bound(v.keyframe); found != place_.end() && v.inlier)
+        at.insert(found->second);
+    for (const std::size_t v : at) around.insert(common_[v].all.begin(), common_[v].all.end());
+    return {around.begin(), around.end()};
+  }
+
+  /// Adds views of keyframes that have none; false when there are none, or the line would not be known any more.
+  bool extend(LineRecord& line, const std::vector<Sighting>& seen) {
+    std::set<FrameId> have;
+    for (const LineView& v : line.views) have.insert(v.keyframe);
+    LineRecord more = line;
+    for (const Sighting& s : seen)
+      if (have.count(views_[s.view].keyframe) == 0) more.views.push_back(viewOf(s, line.id));
+    if (more.views.size() == line.views.size()) return false;
+    std::stable_sort(more.views.begin(), more.views.end(),
+                     [](const LineView& a, const LineView& b) { return a.keyframe < b.keyframe; });
+    if (!fitLine(cameras_, fit_, more) || !evidenceOf(map_, cameras_, more).known) return false;
+    report_.views += more.views.size() - line.views.size();
+    line = std::move(more);
+    return true;
+  }
+
+  /// The line of a candidate that was found for an edge of view `i`, if it has enough evidence. One whose views leave
+  /// its direction or position open is added as well: parallel lines may make it known.
+  void addLine(std::size_t i, Segment3 segment_w) {
+    ++report_.candidates;
+    LineRecord line;
+    std::vector<Sighting> seen;
+    for (int pass = 0; pass < kPasses; ++pass) {
+      seen = sightings(common_[i].all, segment_w, false);
+      line = LineRecord();
+      line.id = next_id_;
+      line.mapped = true;
+      for (const Sighting& s : seen) line.views.push_back(viewOf(s, line.id));
+      if (!fitLine(cameras_, fit_, line) || line.error_px > most_error_px_) return;
+      const LineEvidence evidence = evidenceOf(map_, cameras_, line);
+      if (!evidence.known && !evidence.degenerate) return;
+      if (evidence.known) segment_w = evidence.segment_w;
+      line.parallel = !evidence.known;
+    }
+    if (!isSupported(line, segment_w, i)) return;
+    take(seen);
+    material_.lines.push_back(std::move(line));
+    ++next_id_;
+    ++report_.lines;
+  }
+
+  /// Whether enough images, from places far enough apart, have it, and would not by chance.
+  bool isSupported(const LineRecord& line, const Segment3& segment_w, std::size_t i) const {
+    const auto planeOf = [&](std::size_t v) {
+      return line.estimate.direction_w.cross(line.estimate.middle_w - views_[v].p_w_c).normalized();
+    };
+    const double tolerance_px = kFittedShare * params_.tolerance_px;
+    const Eigen::Vector3d own = planeOf(i);
+    int visible = 0, supporters = 0;
+    double chance = 0, cover = 0;
+    std::vector<double> sines;
+    std::vector<std::size_t> among = common_[i].chosen;
+    among.push_back(i);
+    for (const std::size_t v : among) {
+      const SeenSegment seen = seenSegment(views_[v], segment_w);
+      const LineSupport support = supportOf(views_[v], seen, tolerance_px, false);
+      if (!support.visible) continue;
+      ++visible;
+      chance += chanceOf(views_[v], seen, tolerance_px);
+      if (support.cover < params_.least_cover) continue;
+      ++supporters;
+      cover += support.cover;
+      sines.push_back(own.cross(planeOf(v)).norm());
+    }
+    if (supporters < params_.min_keyframes || cover < params_.least_share * visible) return false;
+    std::sort(sines.begin(), sines.end(), std::greater<>());
+    if (sines[2] < std::sin(params_.min_parallax_rad)) return false;
+    // two views determine the line; the others might have agreed by chance
+    const double p = (chance + kChanceMore) / visible;
+    return binomialTail(supporters - 2, visible - 2, p) <= params_.max_chance;
+  }
+
+  const DensifyParams& params_;
+  const MapParams& map_;
+  MapMaterial& material_;
+  KeyframeCameras cameras_;
+  LineFitParams fit_;
+  std::vector<SegmentView> views_;
+  std::map<FrameId, std::size_t> place_;  ///< of a keyframe among the views
+  std::vector<CommonViews> common_;
+  TrackId next_id_ = 0;
+  double most_error_px_ = 0;
+  DensifyReport report_;
+};
+
+}  // namespace
+
+DensifyReport densify(const DensifyParams& params, const MapParams& map, const ImageEdges& edges, MapMaterial& material,
+                      int threads, const DensifyProgress& progress) {
+  checkRanges(params, "densification.");
+  return Densifier(params, map, edges, material).run(threads, progress);
+}
+
+}  // namespace lintel
