@@ -28,6 +28,12 @@ struct Sighting {
   std::size_t view, segment;
 };
 
+/// A line that the material does not have, and its edges.
+struct NewLine {
+  LineRecord record;
+  std::vector<Sighting> seen;
+};
+
 /// The search in one material.
 class Densifier {
  public:
@@ -48,28 +54,28 @@ class Densifier {
 
   DensifyReport run(int threads, const DensifyProgress& progress) {
     takeKnown();
-    std::vector<std::optional<LineCandidate>> candidates;
+    std::vector<std::optional<NewLine>> lines;
     for (std::size_t i = 0; i < views_.size(); ++i) {
       if (progress && !progress(static_cast<double>(i) / static_cast<double>(views_.size()))) break;
       const std::size_t n = common_[i].chosen.empty() ? 0 : views_[i].size();
-      candidates.assign(n, std::nullopt);
-      parallelFor(n, threads, [&](std::size_t s) {
-        if (!views_[i].taken[s]) candidates[s] = searchLine(params_, views_, common_[i].chosen, i, s);
-      });
-      for (std::size_t s = 0; s < n; ++s)
-        if (candidates[s] && !views_[i].taken[s]) addLine(i, candidates[s]->segment_w);
+      lines.assign(n, std::nullopt);
+      parallelFor(n, threads, [&](std::size_t s) { lines[s] = lineFrom(i, s); });
+      for (std::size_t s = 0; s < n; ++s) {
+        if (lines[s] && isTaken(*lines[s])) lines[s] = lineFrom(i, s);
+        if (lines[s]) add(std::move(*lines[s]));
+      }
     }
     return report_;
   }
 
  private:
   /// Edges of `among` that lie on a segment in space.
-  std::vector<Sighting> sightings(const std::vector<std::size_t>& among, const Segment3& segment_w,
-                                  bool taken_too) const {
+  std::vector<Sighting> sightings(const std::vector<std::size_t>& among, const Segment3& segment_w, bool taken_too,
+                                  const EdgeLook* look = nullptr) const {
     std::vector<Sighting> seen;
     for (const std::size_t v : among)
       for (const std::size_t s :
-           supportOf(views_[v], seenSegment(views_[v], segment_w), params_.tolerance_px, taken_too).by)
+           supportOf(views_[v], seenSegment(views_[v], segment_w), params_.tolerance_px, taken_too, look).by)
         seen.push_back({v, s});
     return seen;
   }
@@ -129,33 +135,44 @@ class Densifier {
     return true;
   }
 
-  /// The line of a candidate that was found for an edge of view `i`, if it has enough evidence. One whose views leave
-  /// its direction or position open is added as well: parallel lines may make it known.
-  void addLine(std::size_t i, Segment3 segment_w) {
-    ++report_.candidates;
-    LineRecord line;
-    std::vector<Sighting> seen;
-    for (int pass = 0; pass < kPasses; ++pass) {
-      seen = sightings(common_[i].all, segment_w, false);
-      line = LineRecord();
-      line.id = next_id_;
-      line.mapped = true;
-      for (const Sighting& s : seen) line.views.push_back(viewOf(s, line.id));
-      if (!fitLine(cameras_, fit_, line) || line.error_px > most_error_px_) return;
-      const LineEvidence evidence = evidenceOf(map_, cameras_, line);
-      if (!evidence.known && !evidence.degenerate) return;
-      if (evidence.known) segment_w = evidence.segment_w;
-      line.parallel = !evidence.known;
-    }
-    if (!isSupported(line, segment_w, i)) return;
-    take(seen);
-    material_.lines.push_back(std::move(line));
-    ++next_id_;
+  bool isTaken(const NewLine& line) const {
+    return std::any_of(line.seen.begin(), line.seen.end(),
+                       [&](const Sighting& s) { return views_[s.view].taken[s.segment] != 0; });
+  }
+
+  void add(NewLine&& line) {
+    take(line.seen);
+    line.record.id = next_id_++;
+    for (LineView& view : line.record.views) view.track = line.record.id;
+    material_.lines.push_back(std::move(line.record));
     ++report_.lines;
   }
 
+  /// The line of an edge, if one is found and has enough evidence. One whose views leave its direction or position open
+  /// is taken as well: parallel lines may make it known.
+  std::optional<NewLine> lineFrom(std::size_t i, std::size_t s) const {
+    if (views_[i].taken[s]) return std::nullopt;
+    auto segment_w = searchLine(params_, views_, common_[i].chosen, i, s);
+    if (!segment_w) return std::nullopt;
+    const EdgeLook look(views_[i].segments[s]);
+    NewLine line;
+    for (int pass = 0; pass < kPasses; ++pass) {
+      line.seen = sightings(common_[i].all, *segment_w, false, &look);
+      line.record = LineRecord();
+      line.record.mapped = true;
+      for (const Sighting& seen : line.seen) line.record.views.push_back(viewOf(seen, 0));
+      if (!fitLine(cameras_, fit_, line.record) || line.record.error_px > most_error_px_) return std::nullopt;
+      const LineEvidence evidence = evidenceOf(map_, cameras_, line.record);
+      if (!evidence.known && !evidence.degenerate) return std::nullopt;
+      if (evidence.known) segment_w = evidence.segment_w;
+      line.record.parallel = !evidence.known;
+    }
+    if (!isSupported(line.record, *segment_w, i, look)) return std::nullopt;
+    return line;
+  }
+
   /// Whether enough images, from places far enough apart, have it, and would not by chance.
-  bool isSupported(const LineRecord& line, const Segment3& segment_w, std::size_t i) const {
+  bool isSupported(const LineRecord& line, const Segment3& segment_w, std::size_t i, const EdgeLook& look) const {
     const auto planeOf = [&](std::size_t v) {
       return line.estimate.direction_w.cross(line.estimate.middle_w - views_[v].p_w_c).normalized();
     };
@@ -168,10 +185,10 @@ class Densifier {
     among.push_back(i);
     for (const std::size_t v : among) {
       const SeenSegment seen = seenSegment(views_[v], segment_w);
-      const LineSupport support = supportOf(views_[v], seen, tolerance_px, false);
+      const LineSupport support = supportOf(views_[v], seen, tolerance_px, false, &look);
       if (!support.visible) continue;
       ++visible;
-      chance += chanceOf(views_[v], seen, tolerance_px);
+      chance += chanceOf(views_[v], seen, tolerance_px, look);
       if (support.cover < params_.least_cover) continue;
       ++supporters;
       cover += support.cover;

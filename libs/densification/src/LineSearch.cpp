@@ -35,15 +35,23 @@ std::optional<Segment3> pairOf(const SegmentView& view, std::size_t s, const Seg
 
 using Edge = std::pair<std::size_t, std::size_t>;  // view, segment
 
+/// A line that the segment may be the picture of.
+struct LineCandidate {
+  Segment3 segment_w;
+  double score = 0;    ///< what other images cover of it, summed up
+  int supporters = 0;  ///< those images
+};
+
 /// Looks for a segment in all of `common`; adds the edges that support it to `used`.
 LineCandidate lookFor(const DensifyParams& params, const std::vector<SegmentView>& views,
-                      const std::vector<std::size_t>& common, const Segment3& segment_w, std::set<Edge>& used) {
+                      const std::vector<std::size_t>& common, const Segment3& segment_w, const EdgeLook& look,
+                      std::set<Edge>& used) {
   LineCandidate candidate{segment_w};
   int visible = 0;
   for (std::size_t k = 0; k < common.size(); ++k) {
     if (visible >= kFirstLook && candidate.supporters < kLeastFirst) break;
     const SegmentView& view = views[common[k]];
-    const LineSupport support = supportOf(view, seenSegment(view, segment_w), params.tolerance_px, false);
+    const LineSupport support = supportOf(view, seenSegment(view, segment_w), params.tolerance_px, false, &look);
     if (!support.visible) continue;
     ++visible;
     if (support.cover < params.least_cover) continue;
@@ -56,23 +64,26 @@ LineCandidate lookFor(const DensifyParams& params, const std::vector<SegmentView
 
 }  // namespace
 
-std::optional<LineCandidate> searchLine(const DensifyParams& params, const std::vector<SegmentView>& views,
-                                        const std::vector<std::size_t>& common, std::size_t i, std::size_t s) {
+std::optional<Segment3> searchLine(const DensifyParams& params, const std::vector<SegmentView>& views,
+                                   const std::vector<std::size_t>& common, std::size_t i, std::size_t s) {
   std::optional<LineCandidate> best;
   std::set<Edge> used;  // by candidates that have been looked for: the same line again
+  const EdgeLook look(views[i].segments[s]);
   const std::size_t partners = std::min(common.size(), static_cast<std::size_t>(params.partners));
   for (std::size_t k = 0; k < partners; ++k) {
     const SegmentView& other = views[common[k]];
     for (std::size_t t = 0; t < other.size(); ++t) {
       if (other.taken[t] || used.count({common[k], t}) > 0) continue;
+      if (!look.maybeSame(EdgeLook(other.segments[t]))) continue;
       const auto segment = pairOf(views[i], s, other, t);
       if (!segment) continue;
-      const LineCandidate candidate = lookFor(params, views, common, *segment, used);
+      const LineCandidate candidate = lookFor(params, views, common, *segment, look, used);
       if (candidate.supporters + 1 >= params.min_keyframes && (!best || candidate.score > best->score))
         best = candidate;
     }
   }
-  return best;
+  if (!best) return std::nullopt;
+  return best->segment_w;
 }
 
 }  // namespace lintel

@@ -9,10 +9,11 @@ namespace lintel {
 namespace {
 
 constexpr double kBorder_px = 6, kLeastDepth_m = 0.05;
-constexpr int kPlaces = 8;            // along a segment, at which it is seen or not
-constexpr double kLeast_px = 14;      // of a segment in an image
-constexpr double kMostTurn = 0.09;    // between edge and projection [rad]
-constexpr double kLeastOnEdge = 0.3;  // of an edge's length, beside the segment, to be explained by it
+constexpr int kPlaces = 8;                           // along a segment, at which it is seen or not
+constexpr double kLeast_px = 14;                     // of a segment in an image
+constexpr double kMostTurn = 0.09;                   // between edge and projection [rad]
+constexpr float kLeastChange = 15, kChange = 0.75f;  // of the mean of its sides: grey levels, and share of the contrast
+constexpr double kLeastOnEdge = 0.3;                 // of an edge's length, beside the segment, to be explained by it
 
 /// Length of the union of intervals, which it sorts.
 double unionOf(std::vector<std::pair<double, double>>& intervals) {
@@ -61,7 +62,12 @@ SeenSegment seenSegment(const SegmentView& view, const Segment3& segment_w) {
   return seen;
 }
 
-LineSupport supportOf(const SegmentView& view, const SeenSegment& seen, double tolerance_px, bool taken_too) {
+bool EdgeLook::maybeSame(const EdgeLook& other) const {
+  return std::abs(mean - other.mean) <= std::max(kLeastChange, kChange * std::max(contrast, other.contrast));
+}
+
+LineSupport supportOf(const SegmentView& view, const SeenSegment& seen, double tolerance_px, bool taken_too,
+                      const EdgeLook* look) {
   LineSupport support;
   support.visible = seen.length_rad > 0;
   if (!support.visible) return support;
@@ -77,6 +83,7 @@ LineSupport supportOf(const SegmentView& view, const SeenSegment& seen, double t
     if (std::abs(from_start(i) - from_end(i)) > kMostTurn * view.length(i)) continue;
     const auto k = static_cast<std::size_t>(i);
     if (view.taken[k] && !taken_too) continue;
+    if (look && !look->maybeSame(EdgeLook(view.segments[k]))) continue;
     if (view.normal.row(i).matrix().dot(h.transpose()) < 0) continue;
     const auto along = [&](const SegmentView::Columns& rays) {
       const Eigen::Vector3f ray = rays.row(i).matrix();
@@ -91,7 +98,7 @@ LineSupport supportOf(const SegmentView& view, const SeenSegment& seen, double t
   return support;
 }
 
-double chanceOf(const SegmentView& view, const SeenSegment& seen, double tolerance_px) {
+double chanceOf(const SegmentView& view, const SeenSegment& seen, double tolerance_px, const EdgeLook& look) {
   double sum = 0;
   int n = 0;
   const Eigen::Vector3d middle = std::cos(0.5 * seen.length_rad) * seen.start_c +
@@ -103,7 +110,7 @@ double chanceOf(const SegmentView& view, const SeenSegment& seen, double toleran
     SeenSegment beside = seen;
     beside.normal_c = turn * seen.normal_c;
     beside.start_c = turn * seen.start_c;
-    sum += supportOf(view, beside, tolerance_px, true).cover;
+    sum += supportOf(view, beside, tolerance_px, true, &look).cover;
     ++n;
   }
   return sum / n;

@@ -24,12 +24,22 @@ struct SeenSegment {
 };
 SeenSegment seenSegment(const SegmentView& view, const Segment3& segment_w);
 
+/// The grey levels of an edge's sides.
+struct EdgeLook {
+  explicit EdgeLook(const EdgeSegment& edge)
+      : mean(0.5f * (edge.dark + edge.bright)), contrast(edge.bright - edge.dark) {}
+  bool maybeSame(const EdgeLook& other) const;
+
+  float mean, contrast;
+};
+
 /// How far edges of `view` cover `seen`; edges farther than `tolerance_px` at either end, of another direction, with
 /// the brighter side on the other side, or taken do not count.
-LineSupport supportOf(const SegmentView& view, const SeenSegment& seen, double tolerance_px, bool taken_too);
+LineSupport supportOf(const SegmentView& view, const SeenSegment& seen, double tolerance_px, bool taken_too,
+                      const EdgeLook* look);
 
 /// The share of `seen` that edges of the image would cover by chance: what they cover of it elsewhere nearby.
-double chanceOf(const SegmentView& view, const SeenSegment& seen, double tolerance_px);
+double chanceOf(const SegmentView& view, const SeenSegment& seen, double tolerance_px, const EdgeLook& look);
 
 /// The chance that `k` or more of `n` happen where each has the chance `p`.
 double binomialTail(int k, int n, double p);

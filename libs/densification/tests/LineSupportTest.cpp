@@ -8,6 +8,8 @@
 namespace lintel {
 namespace {
 
+const EdgeLook kAny(EdgeSegment{});
+
 /// One camera at the origin that looks along z, 100 px a radian at the image's middle, no distortion.
 class LineSupportTest : public testing::Test {
  protected:
@@ -31,7 +33,7 @@ TEST_F(LineSupportTest, CoverIsTheShareOfItsAngleOnEdges) {
   const SegmentView view = viewOf({{{150, 200}, {200, 200}, 0.3}});
   const SeenSegment seen = seenSegment(view, segment_);
   EXPECT_NEAR(seen.length_rad, 2 * std::atan(0.5), 1e-9);
-  const LineSupport support = supportOf(view, seen, 2, false);
+  const LineSupport support = supportOf(view, seen, 2, false, nullptr);
   EXPECT_TRUE(support.visible);
   EXPECT_NEAR(support.cover, 0.5, 1e-6);
   EXPECT_EQ(support.by, std::vector<std::size_t>{0});
@@ -39,7 +41,7 @@ TEST_F(LineSupportTest, CoverIsTheShareOfItsAngleOnEdges) {
 
 TEST_F(LineSupportTest, EdgesThatOverlapCountOnce) {
   const SegmentView view = viewOf({{{150, 200}, {210, 200}, 0.3}, {{190, 200.5}, {250, 200.5}, 0.3}});
-  EXPECT_NEAR(supportOf(view, seenSegment(view, segment_), 2, false).cover, 1, 1e-6);
+  EXPECT_NEAR(supportOf(view, seenSegment(view, segment_), 2, false, nullptr).cover, 1, 1e-6);
 }
 
 TEST_F(LineSupportTest, OnlyEdgesThatMayBeItsOwnCount) {
@@ -47,22 +49,35 @@ TEST_F(LineSupportTest, OnlyEdgesThatMayBeItsOwnCount) {
       other_side{{250, 200}, {150, 200}, 0.3}, beyond{{300, 200}, {390, 200}, 0.3};
   for (const EdgeSegment& edge : {aside, turned, other_side, beyond}) {
     const SegmentView view = viewOf({edge});
-    EXPECT_EQ(supportOf(view, seenSegment(view, segment_), 2, false).cover, 0) << edge.start_px.transpose();
+    EXPECT_EQ(supportOf(view, seenSegment(view, segment_), 2, false, nullptr).cover, 0) << edge.start_px.transpose();
   }
 }
 
 TEST_F(LineSupportTest, TakenEdgesCountWhereAskedFor) {
   SegmentView view = viewOf({{{150, 200}, {250, 200}, 0.3}});
   view.taken[0] = 1;
-  EXPECT_EQ(supportOf(view, seenSegment(view, segment_), 2, false).cover, 0);
-  EXPECT_NEAR(supportOf(view, seenSegment(view, segment_), 2, true).cover, 1, 1e-6);
+  EXPECT_EQ(supportOf(view, seenSegment(view, segment_), 2, false, nullptr).cover, 0);
+  EXPECT_NEAR(supportOf(view, seenSegment(view, segment_), 2, true, nullptr).cover, 1, 1e-6);
+}
+
+TEST_F(LineSupportTest, EdgesOfOtherGreyLevelsDoNotCount) {
+  const SegmentView view = viewOf({{{150, 200}, {250, 200}, 0.3, 80, 120}});
+  const auto cover = [&](float dark, float bright) {
+    const EdgeLook look(EdgeSegment{{}, {}, 0.3, dark, bright});
+    return supportOf(view, seenSegment(view, segment_), 2, false, &look).cover;
+  };
+  EXPECT_NEAR(cover(80, 120), 1, 1e-6);
+  EXPECT_NEAR(cover(90, 110), 1, 1e-6) << "blur takes contrast";
+  EXPECT_NEAR(cover(100, 150), 1, 1e-6) << "the exposure has changed";
+  EXPECT_EQ(cover(120, 160), 0) << "the next step of a staircase";
+  EXPECT_EQ(cover(30, 60), 0);
 }
 
 TEST_F(LineSupportTest, ASegmentOutsideTheImageOrBehindIsNotSeen) {
   const SegmentView view = viewOf({});
   for (const Segment3& s : {Segment3{{5, 0, 1}, {6, 0, 1}}, Segment3{{-0.5, 0, -1}, {0.5, 0, -1}}}) {
     EXPECT_EQ(seenSegment(view, s).length_rad, 0);
-    EXPECT_FALSE(supportOf(view, seenSegment(view, s), 2, false).visible);
+    EXPECT_FALSE(supportOf(view, seenSegment(view, s), 2, false, nullptr).visible);
   }
 }
 
@@ -74,11 +89,11 @@ TEST_F(LineSupportTest, OfALongSegmentThePartWithinTheImageIsSeen) {
 
 TEST_F(LineSupportTest, ChanceIsWhatEdgesBesideWouldCover) {
   const SegmentView alone = viewOf({{{150, 200}, {250, 200}, 0.3}});
-  EXPECT_EQ(chanceOf(alone, seenSegment(alone, segment_), 2), 0) << "its own edge is no chance";
+  EXPECT_EQ(chanceOf(alone, seenSegment(alone, segment_), 2, kAny), 0) << "its own edge is no chance";
   std::vector<EdgeSegment> hatching;
   for (double y = 150; y <= 250; y += 3) hatching.push_back({{120, y}, {280, y}, 0.3});
   const SegmentView hatched = viewOf(hatching);
-  EXPECT_GT(chanceOf(hatched, seenSegment(hatched, segment_), 2), 0.9);
+  EXPECT_GT(chanceOf(hatched, seenSegment(hatched, segment_), 2, kAny), 0.9);
 }
 
 TEST(BinomialTail, ByHand) {

@@ -105,11 +105,7 @@ Json refinementJson(const OdometryResult& result) {
 }
 
 Json densificationJson(const DensifyReport& d) {
-  return {{"images", d.images},
-          {"edges", d.segments},
-          {"views_added", d.views},
-          {"candidates", d.candidates},
-          {"lines", d.lines}};
+  return {{"images", d.images}, {"edges", d.segments}, {"views_added", d.views}, {"lines", d.lines}};
 }
 
 Json cameraJson(const Camera& c, const Pose& T_b_c, double time_offset_s, double readout_s) {

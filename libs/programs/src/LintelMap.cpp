@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "CommandLine.h"
+#include "MapDensifying.h"
 #include "ProgramMain.h"
 #include "RecordingOptions.h"
 #include "StopSignals.h"
@@ -85,7 +86,10 @@ class LintelMap {
            "  lintel-map map.lintel -o map.png --colour height       a picture: above, first camera, side\n"
            "  lintel-map map.lintel -o map.csv --min-observations 5  a table of the well-seen lines\n"
            "  lintel-map map.lintel -o map.colmap --images images --recording flight.bag   for COLMAP\n"
-           "  lintel-map map.lintel -o map.obj --layers lines,trajectory --radius 0.01";
+           "  lintel-map map.lintel -o map.obj --layers lines,trajectory --radius 0.01\n"
+           "lintel-map densify MAP.lintel INPUT -o FILE.lintel searches the images for more lines: see lintel-map "
+           "densify "
+           "--help";
   }
 
   void checkOutputs() const {
@@ -191,7 +195,10 @@ class LintelMap {
 }  // namespace
 
 int runLintelMap(int argc, const char* const* argv, std::ostream& out, std::ostream& err) {
-  return programMain(LintelMap::kName, err, [&] { return LintelMap(out, err).run(argc, argv); });
+  return programMain(LintelMap::kName, err, [&] {
+    if (argc > 1 && std::string(argv[1]) == "densify") return densifyFromCommandLine(argc - 1, argv + 1, out, err);
+    return LintelMap(out, err).run(argc, argv);
+  });
 }
 
 }  // namespace lintel

@@ -15,6 +15,7 @@
 
 #include "VioTestRuns.h"
 #include "lintel/evaluation/TrajectoryErrors.h"
+#include "lintel/evaluation/TrajectoryFile.h"
 #include "lintel/mapping/MapFile.h"
 #include "lintel/pipeline/Results.h"
 #include "lintel/simulation/Simulation.h"
@@ -362,6 +363,69 @@ TEST_F(LintelVioTest, WrongCommandLinesAreUsage) {
     EXPECT_EQ(runVio(arguments).exit_code, 2) << testing::PrintToString(arguments);
   expectOneLine(runVio({recording(), "-o", out("usage"), "--threads", "64"}), "--threads");
   EXPECT_FALSE(fs::exists(out("usage")));
+}
+
+TEST_F(LintelVioTest, AMapIsSearchedAgainAfterwards) {
+  ASSERT_EQ(run(recording(), "sparse", {"--set", "densification.enabled=false"}).exit_code, 0);
+  const std::string sparse = out("sparse") + "/map.lintel", dense = *work_ / "dense.lintel";
+  const LineMap before = readMap(sparse), whole = readMap(out("reference") + "/map.lintel");
+  const auto mapped = [](const LineMap& map) {
+    return std::count_if(map.lines.begin(), map.lines.end(), [](const MapLine& line) { return line.mapped; });
+  };
+  EXPECT_EQ(mapped(before), 0);
+  EXPECT_GT(mapped(whole), 5);
+  EXPECT_GT(whole.lines.size(), before.lines.size());
+  EXPECT_TRUE(bytesOf(out("sparse") + "/trajectory_refined.tum") ==
+              bytesOf(out("reference") + "/trajectory_refined.tum"));
+
+  const ProgramRun run = runMap({"densify", sparse, recording(), "-o", dense});
+  ASSERT_EQ(run.exit_code, 0) << run.err;
+  EXPECT_THAT(run.out, StartsWith(dense + ": "));
+  const LineMap after = readMap(dense);
+  EXPECT_GT(mapped(after), 5);
+  EXPECT_GT(after.lines.size(), before.lines.size());
+  EXPECT_EQ(after.keyframes.size(), before.keyframes.size());
+  EXPECT_EQ(after.source, before.source);
+
+  const std::string other = *work_ / "dense1.lintel";
+  ASSERT_EQ(runMap({"densify", sparse, recording(), "-o", other, "--threads", "1", "-q"}).exit_code, 0);
+  EXPECT_TRUE(bytesOf(dense) == bytesOf(other)) << "on one thread";
+}
+
+TEST_F(LintelVioTest, AMapIsSearchedWithOtherPoses) {
+  const std::string map = out("reference") + "/map.lintel", dense = *work_ / "true.lintel",
+                    truth = recording() + "/mav0/state_groundtruth_estimate0/data.csv";
+  ASSERT_EQ(runMap({"densify", map, recording(), "-o", dense, "--poses", truth, "-q"}).exit_code, 0);
+  const LineMap after = readMap(dense), before = readMap(map);
+  EXPECT_GT(after.lines.size(), before.lines.size() / 2);
+  const StampedPoses poses = readTrajectory(truth);
+  for (const MapKeyframe& keyframe : after.keyframes) {
+    const auto at = std::lower_bound(poses.begin(), poses.end(), keyframe.t_ns,
+                                     [](const auto& pose, std::int64_t t) { return pose.first < t; });
+    ASSERT_NE(at, poses.end());
+    EXPECT_LT((at->second.p - keyframe.T_w_b.p).norm(), 0.02);
+  }
+}
+
+TEST_F(LintelVioTest, ASearchThatCannotBeIsOneLineAndLeavesNothing) {
+  const std::string map = out("reference") + "/map.lintel", dense = *work_ / "none.lintel", poses = *work_ / "few.tum";
+  std::ofstream(poses) << "1 0 0 0 0 0 0 1\n2 0 0 0 0 0 0 1\n";
+  const auto fails = [&](std::vector<std::string> arguments, const std::string& word, int exit_code = 1) {
+    arguments.insert(arguments.begin(), "densify");
+    const ProgramRun run = runMap(arguments);
+    EXPECT_EQ(run.exit_code, exit_code);
+    EXPECT_THAT(run.err, HasSubstr(word));
+    EXPECT_EQ(std::count(run.err.begin(), run.err.end(), '\n'), 1) << run.err;
+    EXPECT_FALSE(fs::exists(dense));
+  };
+  fails({map, recording(), "-o", dense, "-q", "--poses", poses}, "fewer than two keyframes of the map have a pose");
+  fails({map, *work_ / "nothing", "-o", dense, "-q"}, "nothing");
+  fails({recording() + "/mav0/cam0/sensor.yaml", recording(), "-o", dense, "-q"}, "sensor.yaml");
+  fails({map, recording(), "-o", dense, "-q", "--set", "densification.partners=0"}, "densification.partners");
+  fails({map, recording()}, "--output", 2);
+  const ProgramRun again = runMap({"densify", map, recording(), "-o", map});
+  EXPECT_EQ(again.exit_code, 1);
+  EXPECT_THAT(again.err, HasSubstr("exists already"));
 }
 
 TEST_F(LintelVioTest, HelpVersionAndConfigurationNeedNoInput) {

@@ -4,6 +4,7 @@
 #include <sstream>
 
 #include "lintel/programs/Euroc2Rawlog.h"
+#include "lintel/programs/LintelMap.h"
 #include "lintel/programs/LintelVio.h"
 
 namespace lintel::test {
@@ -27,6 +28,10 @@ ProgramRun runProgram(Program program, const char* name, const std::vector<std::
 
 ProgramRun runVio(const std::vector<std::string>& arguments) {
   return runProgram(runLintelVio, "lintel-vio", arguments);
+}
+
+ProgramRun runMap(const std::vector<std::string>& arguments) {
+  return runProgram(runLintelMap, "lintel-map", arguments);
 }
 
 ProgramRun runConverter(const std::vector<std::string>& arguments) {

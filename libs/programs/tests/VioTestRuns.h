@@ -15,6 +15,7 @@ struct ProgramRun {
 };
 
 ProgramRun runVio(const std::vector<std::string>& arguments);
+ProgramRun runMap(const std::vector<std::string>& arguments);
 ProgramRun runConverter(const std::vector<std::string>& arguments);
 
 /// share/lintel/config/euroc.yaml of the source tree.

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <opencv2/ximgproc/edge_drawing.hpp>
 
+#include "EdgeAppearance.h"
 #include "EdgeRefiner.h"
 #include "LineMerger.h"
 
@@ -89,9 +90,11 @@ std::vector<EdgeSegment> SegmentDetector::detect(const GrayImage& image) {
                      [&](const RefinedLine& other) { return d.merger.duplicates(other.line, edge.line); }))
       kept.push_back(edge);
   std::vector<EdgeSegment> segments;
-  for (const RefinedLine& edge : kept)
+  for (const RefinedLine& edge : kept) {
+    const SideLevels sides = sideLevels(d.camera, d.pyramid.image(), edge.line).value_or(SideLevels());
     segments.push_back({d.camera.toImage(edge.line.start, edge.line.axis),
-                        d.camera.toImage(edge.line.end, edge.line.axis), edge.sigma_px});
+                        d.camera.toImage(edge.line.end, edge.line.axis), edge.sigma_px, sides.dark, sides.bright});
+  }
   return segments;
 }
 

@@ -38,6 +38,8 @@ TEST_F(SegmentDetectorTest, BothEdgesOfAStripWithTheBrightSideOnTheRight) {
     });
     ASSERT_NE(edge, found.end()) << y;
     EXPECT_NEAR((edge->end_px - edge->start_px).norm(), 180, 10);
+    EXPECT_NEAR(edge->dark, 60, 5);
+    EXPECT_NEAR(edge->bright, 180, 5);
     EXPECT_EQ(edge->end_px.x() > edge->start_px.x(), y < 160) << "the strip is below its upper edge";
   }
 }

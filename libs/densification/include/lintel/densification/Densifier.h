@@ -19,8 +19,7 @@ using ImageEdges = std::map<std::int64_t, std::vector<EdgeSegment>>;
 struct DensifyReport {
   std::size_t images = 0, segments = 0;  ///< searched
   std::size_t views = 0;                 ///< added to lines that the map had
-  int candidates = 0;                    ///< lines that were found in enough images
-  int lines = 0;                         ///< of these, those that were added
+  int lines = 0;                         ///< added, before merging
 };
 
 /// Called now and then with the share that is done, in [0, 1]; false ends the search: what was found stays.

@@ -19,7 +19,7 @@ struct DensifyParams {
   double min_parallax_rad = 0.02;  ///< between the planes of views, of three at least
   double least_share = 0.3;        ///< of the images that should see it, to be covered on the average
   double max_error_ratio = 2;      ///< of a line's mean error to what 95 % of the tracked lines keep
-  double max_chance = 1e-3;        ///< that edges which happen to be there support a line as well
+  double max_chance = 1e-4;        ///< that edges which happen to be there support a line as well
 
   template <class F>
   void fields(F&& field) {

@@ -41,6 +41,10 @@ void prepareMaterial(const MapParams& params, MapMaterial& material);
 /// degenerate ones.
 void settleLines(const MapParams& params, MapMaterial& material);
 
+/// What a map keeps of the material that it was drawn from: keyframes without IMU, points and lines with the views that
+/// agree. Lines are fitted to them.
+MapMaterial materialOf(const MapParams& params, const LineMap& map);
+
 /// The map of what has enough evidence: enough views that agree, known well enough, of some length. Ends are where they
 /// were seen; parallel groups are named.
 LineMap drawMap(const MapParams& params, const MapMaterial& material);

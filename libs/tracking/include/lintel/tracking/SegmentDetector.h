@@ -15,7 +15,8 @@ namespace lintel {
 /// right hand.
 struct EdgeSegment {
   Eigen::Vector2d start_px = Eigen::Vector2d::Zero(), end_px = Eigen::Vector2d::Zero();  ///< raw (distorted) pixels
-  double sigma_px = 1;  ///< standard deviation of an end's distance from the edge
+  double sigma_px = 1;         ///< standard deviation of an end's distance from the edge
+  float dark = 0, bright = 0;  ///< mean grey levels of its sides
 };
 
 /// How single images are searched for straight edges.

@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "lintel/mapping/LineFitting.h"
+#include "lintel/mapping/MapBuilder.h"
+
+namespace lintel {
+
+namespace {
+
+constexpr float kViewSigma_px = 0.3f;  // of edges that were followed; a map does not keep it
+
+}  // namespace
+
+MapMaterial materialOf(const MapParams& params, const LineMap& map) {
+  MapMaterial material;
+  material.rig = map.rig;
+  material.trajectory = map.trajectory;
+  for (const MapKeyframe& keyframe : map.keyframes) {
+    RetiredKeyframe k;
+    k.id = keyframe.id, k.t_ns = keyframe.t_ns, k.T_w_b = keyframe.T_w_b, k.v_w_b = keyframe.v_w_b;
+    k.bias = {keyframe.bias_gyro, keyframe.bias_accel};
+    material.keyframes.push_back(k);
+  }
+  for (const MapPoint& point : map.points) {
+    PointRecord record;
+    record.id = point.id, record.known = true;
+    record.p_w = point.p_w, record.sigma_distance_m = point.sigma_distance_m;
+    for (const MapPointObservation& seen : point.observations)
+      record.views.push_back({seen.keyframe_id, seen.px, true});
+    material.points.push_back(std::move(record));
+  }
+  const KeyframeCameras cameras(material);
+  LineFitParams fit;
+  fit.max_error_px = params.view_max_error_px;
+  fit.min_depth_m = params.min_depth_m;
+  for (const MapLine& line : map.lines) {
+    LineRecord record;
+    record.id = line.id, record.known = true, record.parallel = line.constrained, record.mapped = line.mapped;
+    record.estimate.middle_w = line.segment_w.midpoint();
+    record.estimate.direction_w = line.segment_w.direction();
+    for (const MapLineObservation& seen : line.observations)
+      record.views.push_back({seen.keyframe_id, line.id, seen.start_px, seen.end_px, kViewSigma_px, true});
+    if (line.constrained && line.group >= 0) {
+      const MapGroup& group = map.groups[static_cast<std::size_t>(line.group)];
+      record.tie = LineTie{group.direction_w, std::max(group.spread_rad, line.sigma_direction_rad), {}};
+    }
+    fitLine(cameras, fit, record);
+    material.lines.push_back(std::move(record));
+  }
+  return material;
+}
+
+}  // namespace lintel
