@@ -51,6 +51,7 @@ endfunction()
 function(lintel_allocator TARGET)
   if(NOT CMAKE_CXX_FLAGS MATCHES "-fsanitize")
     target_link_options(${TARGET} BEFORE PRIVATE -Wl,--push-state,--no-as-needed $<TARGET_FILE:mimalloc> -Wl,--pop-state)
+    target_sources(${TARGET} PRIVATE ${PROJECT_SOURCE_DIR}/apps/OperatorNew.cpp)
   endif()
 endfunction()
 

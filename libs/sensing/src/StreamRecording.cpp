@@ -54,17 +54,23 @@ StreamRecording::ItemPtr StreamRecording::produce() {
 }
 
 void StreamRecording::runAhead() {
-  for (bool last = false; !last;) {
-    ItemPtr item = produce();
-    last = item->last();
-    if (!queue_.push(std::move(item))) return;
+  try {
+    for (bool last = false; !last;) {
+      ItemPtr item = produce();
+      last = item->last();
+      if (!queue_.push(std::move(item))) return;
+    }
+  } catch (...) {  // no memory for the item itself
+    failure_ = std::current_exception();
+    queue_.close();
   }
 }
 
 StreamRecording::ItemPtr StreamRecording::take() {
   if (!runs_ahead_) return produce();
   if (!thread_.joinable()) thread_ = std::thread([this] { runAhead(); });
-  return std::move(*queue_.pop());  // never closed while values are taken
+  if (auto item = queue_.pop()) return std::move(*item);
+  std::rethrow_exception(failure_);  // what else closes it while items are taken
 }
 
 std::optional<FrameWithImu> StreamRecording::next() {

@@ -41,6 +41,7 @@ class StreamRecording final : public Recording {
   bool finished_ = false;
 
   BoundedQueue<ItemPtr> queue_;
+  std::exception_ptr failure_;  ///< why the thread closed the queue
   std::thread thread_;
 };
 
