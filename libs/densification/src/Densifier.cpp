@@ -7,6 +7,7 @@
 
 #include "CommonViews.h"
 #include "LineSearch.h"
+#include "RowTimes.h"
 #include "lintel/core/ParallelFor.h"
 #include "lintel/core/Quantiles.h"
 #include "lintel/mapping/LineEvidence.h"
@@ -41,11 +42,16 @@ class Densifier {
       : params_(params), map_(map), material_(material), cameras_(material) {
     fit_.max_error_px = map.view_max_error_px;
     fit_.min_depth_m = map.min_depth_m;
-    for (const RetiredKeyframe& keyframe : material.keyframes)
-      if (const auto found = edges.find(keyframe.t_ns); found != edges.end()) {
-        place_.emplace(keyframe.id, views_.size());
-        views_.emplace_back(cameras_, keyframe.id, found->second);
-      }
+    const RowTimes rows(material);
+    for (std::size_t k = 0; k < material.keyframes.size(); ++k) {
+      const RetiredKeyframe& keyframe = material.keyframes[k];
+      const auto found = edges.find(keyframe.t_ns);
+      if (found == edges.end()) continue;
+      std::vector<EdgeSegment> segments = found->second;
+      rows.move(k, segments);
+      place_.emplace(keyframe.id, views_.size());
+      views_.emplace_back(cameras_, keyframe.id, std::move(segments));
+    }
     common_ = findCommonViews(material, static_cast<std::size_t>(params.views), views_);
     for (const SegmentView& view : views_) report_.segments += view.size();
     report_.images = views_.size();

@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <vector>
+
+#include "lintel/mapping/MapMaterial.h"
+#include "lintel/tracking/SegmentDetector.h"
+
+namespace lintel {
+
+/// Where the edges of a rolling shutter's image would have been at the frame's time, as tracked lines are kept: each
+/// end is moved by the camera's motion from its row's time, as if it were as far away as points usually are. Edges of a
+/// global shutter stay.
+class RowTimes {
+ public:
+  explicit RowTimes(const MapMaterial& material);
+
+  void move(std::size_t keyframe, std::vector<EdgeSegment>& edges) const;
+
+ private:
+  Eigen::Vector3d turnRate_b(const RetiredKeyframe& keyframe) const;
+
+  const MapMaterial& material_;
+  double readout_s_;
+  std::vector<double> inverse_distance_;  ///< usual, by keyframe; 0: of none
+};
+
+}  // namespace lintel
