@@ -69,6 +69,20 @@ const std::string kUser = R"(<script>
   found.oneGroup = await coloured();
   for (const box of groups.slice(1)) box.click();
   found.groupsAgain = await coloured();
+  const filters = [...document.querySelectorAll('#filters input')];
+  found.filters = [];
+  for (const filter of filters) {
+    const text = () => filter.parentNode.textContent, open = text();
+    filter.value = Math.round(filter.max / 2);
+    filter.dispatchEvent(new Event('input'));
+    const half = await coloured(), middle = text();
+    filter.value = filter.max;
+    filter.dispatchEvent(new Event('input'));
+    const few = await coloured();
+    filter.value = 0;
+    filter.dispatchEvent(new Event('input'));
+    found.filters.push({ open, middle, half, few, again: await coloured() });
+  }
   const colour = document.getElementById('colour'), pictures = new Set();
   for (const option of colour.options) {
     colour.value = option.value;
@@ -170,6 +184,16 @@ TEST_F(ViewerPage, LayersColoursHoverAndTimeWork) {
   EXPECT_EQ(found["groups"][0].get<std::string>().rfind("no group (", 0), 0u) << found["groups"];
   EXPECT_LT(found["oneGroup"], found["linesOnly"]);
   EXPECT_EQ(found["groupsAgain"], found["linesOnly"]);
+  ASSERT_EQ(found["filters"].size(), 2u);
+  EXPECT_EQ(found["filters"][0]["open"], "sigma up to 0.033 m");
+  EXPECT_EQ(found["filters"][1]["open"], "seen in 2 keyframes at least");
+  for (const auto& filter : found["filters"]) {
+    EXPECT_NE(filter["middle"], filter["open"]);
+    EXPECT_LT(filter["half"], found["linesOnly"]);
+    EXPECT_LT(filter["few"], filter["half"]);
+    EXPECT_GT(filter["few"], 0);
+    EXPECT_EQ(filter["again"], found["linesOnly"]);
+  }
   EXPECT_EQ(found["modes"], 4);
   ASSERT_FALSE(found["hovered"].empty());
   EXPECT_THAT(found["hovered"][0].get<std::string>(),
