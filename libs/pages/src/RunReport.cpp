@@ -205,16 +205,20 @@ class Report {
     if (!record_.map_picture.empty()) page_.picture(record_.map_picture, "Preview");
     page_.figure(mapFromAbove(result_.map, {}, {}, poses_), "From above");
     page_.endGallery();
-    std::size_t degenerate = 0, constrained = 0;
+    std::size_t degenerate = 0, constrained = 0, mapped = 0;
     double length_m = 0;
     for (const MapLine& line : result_.map.lines) {
       degenerate += line.degenerate;
       constrained += line.constrained;
+      mapped += line.mapped;
       length_m += line.segment_w.length();
     }
     page_.paragraph(std::to_string(result_.map.lines.size()) + " lines of " + fixedText(length_m, 1) + " m in all, " +
                     std::to_string(degenerate) + " degenerate, " + std::to_string(constrained) +
-                    " with a direction taken from their group.");
+                    " with a direction taken from their group." +
+                    (mapped > 0 ? " " + std::to_string(mapped) + " of them tracking had missed: they were found in " +
+                                      std::to_string(result_.densification.images) + " images afterwards."
+                                : ""));
   }
 
   void tracking() {

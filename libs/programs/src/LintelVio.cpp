@@ -273,6 +273,11 @@ class LintelVio {
            << " s: the IMU alone carried the poses there\n";
     out_ << "map: " << result.map.lines.size() << " lines, " << result.map.points.size() << " points, "
          << result.map.keyframes.size() << " keyframes\n";
+    const auto mapped = std::count_if(result.map.lines.begin(), result.map.lines.end(),
+                                      [](const MapLine& line) { return line.mapped; });
+    if (mapped > 0)
+      out_ << "     " << mapped << " of the lines tracking had missed: found in " << result.densification.images
+           << " images afterwards\n";
     if (result.lines_beside > 0)
       out_ << "     " << result.lines_beside
            << " more lines run beside better seen ones and were left out (map.spacing.min_m, 0 keeps them)\n";
