@@ -20,6 +20,7 @@ namespace lintel {
 class WindowFactors {
  public:
   WindowFactors(const SlidingWindow& window, const FactorParams& params);
+  WindowFactors(const SlidingWindow& window, FactorParams&& params) = delete;  // keeps a reference
 
   /// All that is known: priors, gauge, calibration, measurements.
   void addAll(const EstimatorParams& params, const Pose& T_b_c_calibrated);

@@ -90,7 +90,7 @@ class AnyFactorTest : public testing::Test {
       if (track.triangulated && track.sightings.size() > 2 && points_.size() < 3) points_.push_back(id);
     for (const auto& [id, track] : window_.lines)
       if (isWellKnown(track) && lines_.size() < 3) lines_.push_back(id);
-    factors_ = std::make_unique<WindowFactors>(window_, withoutTrackLoss());
+    factors_ = std::make_unique<WindowFactors>(window_, factor_params_);
     factors_->addMeasurements(kParams);
   }
 
@@ -112,6 +112,7 @@ class AnyFactorTest : public testing::Test {
 
   SlidingWindow window_{eurocRig()};
   std::vector<TrackId> points_, lines_;
+  const FactorParams factor_params_ = withoutTrackLoss();
   std::unique_ptr<WindowFactors> factors_;
 };
 
