@@ -120,10 +120,16 @@ double binomialTail(int k, int n, double p) {
   if (k <= 0) return 1;
   if (p <= 0) return 0;
   if (p >= 1) return 1;
+  // logarithm of the binomial's term for k, then from term to term (std::lgamma would write a global variable from
+  // several threads)
+  double log_term = k * std::log(p) + (n - k) * std::log1p(-p);
+  for (int j = 1; j <= k; ++j) log_term += std::log(static_cast<double>(n - k + j) / j);
+  const double log_odds = std::log(p) - std::log1p(-p);
   double sum = 0;
-  for (int i = k; i <= n; ++i)
-    sum += std::exp(std::lgamma(n + 1.0) - std::lgamma(i + 1.0) - std::lgamma(n - i + 1.0) + i * std::log(p) +
-                    (n - i) * std::log1p(-p));
+  for (int i = k; i <= n; ++i) {
+    sum += std::exp(log_term);
+    log_term += log_odds + std::log(static_cast<double>(n - i) / (i + 1));  // minus infinity behind the last
+  }
   return std::min(1.0, sum);
 }
 

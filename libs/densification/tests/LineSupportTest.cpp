@@ -103,6 +103,8 @@ TEST(BinomialTail, ByHand) {
   EXPECT_NEAR(binomialTail(1, 2, 0.1), 0.19, 1e-12);
   EXPECT_EQ(binomialTail(1, 2, 0), 0);
   EXPECT_EQ(binomialTail(2, 2, 1), 1);
+  EXPECT_NEAR(binomialTail(1, 3000, 0.5), 1, 1e-9);            // the first terms are below the smallest double
+  EXPECT_NEAR(binomialTail(1000, 2000, 0.5), 0.508920, 1e-6);  // half and half the middle term, 1 / sqrt(1000 pi)
 }
 
 }  // namespace
