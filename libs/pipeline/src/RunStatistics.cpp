@@ -145,10 +145,11 @@ Json cpuJson(const OdometryStatistics& statistics, const RunCosts& costs, double
 }  // namespace
 
 std::string statisticsJson(const OdometryResult& result, const Rig& given, const RunCosts& costs,
-                           const std::vector<std::string>& warnings) {
+                           const std::vector<std::string>& warnings, const std::vector<std::string>& command) {
   const OdometryStatistics& s = result.statistics;
   const double wall_s = costs.wall_s, process_ms = processTimeMs();
-  const Json json{{"frames", s.frames},
+  const Json json{{"command", command},
+                  {"frames", s.frames},
                   {"frames_with_pose", s.frames_with_pose},
                   {"first_frame_ns", s.first_frame_ns},
                   {"last_frame_ns", s.last_frame_ns},

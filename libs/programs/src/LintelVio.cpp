@@ -13,6 +13,7 @@
 #include <stdexcept>
 
 #include "CommandLine.h"
+#include "EarlierRun.h"
 #include "ProgramMain.h"
 #include "RecordingInfo.h"
 #include "RecordingOptions.h"
@@ -51,9 +52,11 @@ class LintelVio {
     }
     if (info_) return printInfo();
     checkCommandLine();
+    command_ = essentialArguments(argc, argv);
+    if (resume_ && isDone(configuration)) return 0;
     auto recording = openRecording(input_, recording_params_);
     const StopSignals stop;
-    const RunFolder folder(output_, overwrite_);
+    const RunFolder folder(output_, overwrite_ || resume_);
     makeTracksFolder();
     checkpoint_.emplace(output_, checkpoint_s_);
     costs_.once_ms.emplace_back("start of the program", processTimeMs());
@@ -133,6 +136,9 @@ class LintelVio {
         .showDefault();
     line_.flag("--no-refine", no_refine_, "Leave out the batch adjustment after the last frame");
     line_.flag("-w,--overwrite", overwrite_, "Write into OUT although it holds the results of an earlier run");
+    line_.flag("--resume", resume_,
+               "Do nothing if OUT holds the whole results of the same command; process the recording again if that run "
+               "broke off");
     line_.flag("-q,--quiet", quiet_, "No progress, no summary");
     line_.flag("--dump-config", dump_config_, "Print the effective configuration and stop");
   }
@@ -163,6 +169,26 @@ class LintelVio {
     for (const std::string& extension : exports_)
       if (viewerHint(extension).empty()) throw UsageError("--export " + extension + ": there is no such form");
     if (threads_ == 1) recording_params_.frames_ahead = 0;
+  }
+
+  /// Of --resume: whether OUT holds what this command would compute. Throws std::runtime_error if it holds what another
+  /// command has computed, or a result that is not to be trusted.
+  bool isDone(const Configuration& configuration) {
+    const EarlierRun earlier = EarlierRun::in(output_);
+    if (earlier.state == EarlierRun::State::kNone) return false;
+    if (earlier.state == EarlierRun::State::kBroken) {
+      err_ << kName << ": " << output_ << ": the earlier run broke off (" << oneLine(earlier.reason)
+           << "); tracks and window are not saved, so the recording is processed from the start\n";
+      return false;
+    }
+    if (earlier.command != command_ || earlier.configuration != writeConfiguration(configuration))
+      throw std::runtime_error(output_ +
+                               ": holds the results of another command or configuration; choose another folder, or -w "
+                               "without --resume");
+    if (!earlier.verdict.empty())
+      throw std::runtime_error(input_ + ": processed already, not to be trusted: " + earlier.verdict);
+    if (!quiet_) out_ << output_ << ": holds the whole results of this command already; -w computes them again\n";
+    return true;
   }
 
   void makeTracksFolder() const {
@@ -236,7 +262,8 @@ class LintelVio {
       const RunCosts::Once booking(costs_, "report");
       AtomicFile::writeWhole((out / "report.html").string(), report(result, warnings));
     }
-    AtomicFile::writeWhole((out / "stats.json").string(), statisticsJson(result, calibration_, costs_, warnings));
+    AtomicFile::writeWhole((out / "stats.json").string(),
+                           statisticsJson(result, calibration_, costs_, warnings, command_));
   }
 
   std::string report(const OdometryResult& result, const std::vector<std::string>& warnings) const {
@@ -304,7 +331,7 @@ class LintelVio {
   std::ostream& err_;
   CommandLine line_{kName, "Trajectory and 3D line map from a recording with a camera and an IMU."};
   std::string input_, output_, config_, draw_tracks_;
-  std::vector<std::string> settings_, exports_{"glb", "obj", "ply", "3Dscene", "png"}, exported_;
+  std::vector<std::string> settings_, command_, exports_{"glb", "obj", "ply", "3Dscene", "png"}, exported_;
   RecordingParams recording_params_;
   InfoRequest info_request_;
   RunSeries series_;
@@ -313,7 +340,7 @@ class LintelVio {
   std::optional<TrajectoryCheckpoint> checkpoint_;
   double checkpoint_s_ = 5;
   int threads_ = 2;
-  bool no_refine_ = false, overwrite_ = false, quiet_ = false, dump_config_ = false, info_ = false;
+  bool no_refine_ = false, overwrite_ = false, resume_ = false, quiet_ = false, dump_config_ = false, info_ = false;
 };
 
 }  // namespace

@@ -122,6 +122,29 @@ TEST_F(LintelVioTest, WritesWhatItPromisesAndSaysSo) {
   EXPECT_THAT(reference_.out, HasSubstr("trajectory.tum"));
 }
 
+TEST_F(LintelVioTest, ResumesWhatBrokeOffAndLeavesWhatIsDone) {
+  const std::string before = bytesOf(out("reference") + "/stats.json");
+  const std::vector<std::string> command{recording(), "-o",   out("reference"), "-c", eurocConfig(),
+                                         "--export",  "none", "--threads",      "1",  "--resume"};
+  ProgramRun again = runVio(command);
+  EXPECT_EQ(again.exit_code, 0) << again.err;
+  EXPECT_THAT(again.out, HasSubstr("holds the whole results of this command already"));
+  EXPECT_EQ(bytesOf(out("reference") + "/stats.json"), before);
+
+  again = runVio({recording(), "-o", out("reference"), "--resume", "--from", "1"});
+  EXPECT_EQ(again.exit_code, 1);
+  expectOneLine(again, "holds the results of another command or configuration");
+  EXPECT_EQ(bytesOf(out("reference") + "/stats.json"), before);
+
+  fs::create_directories(out("killed"));
+  fs::copy_file(out("reference") + "/trajectory.tum", out("killed") + "/trajectory.partial.tum");
+  again = run(recording(), "killed", {"--threads", "1", "--resume"});
+  EXPECT_EQ(again.exit_code, 0);
+  expectOneLine(again, "the earlier run broke off (it was killed)");
+  expectSameAsReference("killed");
+  EXPECT_FALSE(fs::exists(out("killed") + "/trajectory.partial.tum"));
+}
+
 TEST_F(LintelVioTest, LeavesOutLinesThatCrowdTheMapAndSaysSo) {
   const ProgramRun r = runVio({recording(), "-o", out("spaced"), "-c", eurocConfig(), "--export", "none", "--set",
                                "map.spacing.min_m=0.5", "--set", "map.spacing.min_relative=1"});

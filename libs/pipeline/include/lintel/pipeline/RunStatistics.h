@@ -9,9 +9,10 @@
 
 namespace lintel {
 
-/// The figures of a run as JSON (stats.json of lintel-vio). `given`: the calibration that the recording came with.
+/// The figures of a run as JSON (stats.json of lintel-vio). `given`: the calibration that the recording came with;
+/// `command`: the arguments that decided what was computed.
 std::string statisticsJson(const OdometryResult& result, const Rig& given, const RunCosts& costs,
-                           const std::vector<std::string>& warnings);
+                           const std::vector<std::string>& warnings, const std::vector<std::string>& command = {});
 
 /// Peak resident memory of this process [MB].
 double peakMemoryMb();
