@@ -57,6 +57,15 @@ ImuStatistics imuStatistics(const SlidingWindow& window) {
   return s;
 }
 
+/// Parallax from the oldest frame that shares enough points with the newest: where tracks are short none is shared with
+/// the first.
+double longestParallaxPx(const SlidingWindow& window) {
+  const std::size_t newest = window.frames.size() - 1;
+  double parallax = -1;
+  for (std::size_t k = 0; k < newest && parallax < 0; ++k) parallax = medianDisparityPx(window, k, newest, true);
+  return parallax;
+}
+
 }  // namespace
 
 /// The calibration is held: its errors are in the images' residuals, and common to all tracks.
@@ -121,7 +130,7 @@ std::string Initializer::startStatic(SlidingWindow& window) const {
 }
 
 std::string Initializer::startMoving(SlidingWindow& window) const {
-  const double parallax = medianDisparityPx(window, 0, window.frames.size() - 1, true);
+  const double parallax = longestParallaxPx(window);
   const double half = medianDisparityPx(window, window.frames.size() / 2, window.frames.size() - 1, true);
   // With a full buffer waiting adds no parallax: the sigma of the scale decides then.
   const bool full = static_cast<int>(window.frames.size()) >= params_.initializer.max_frames;

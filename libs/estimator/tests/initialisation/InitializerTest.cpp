@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <map>
 #include <set>
 
 #include "TestWindow.h"
@@ -54,6 +55,32 @@ TEST_F(InitializerTest, StartsInMotion) {
   EXPECT_LT(window.frames.front().T_w_b().p.norm(), 0.01);
   EXPECT_NEAR(yawOf(window.frames.front().T_w_b().q), 0, 0.01);
   EXPECT_EQ(window.priors.size(), 1u);
+}
+
+/// The buffer as a fast camera with much blur sees it: each point is lost after `length` frames, and is found as a new
+/// one.
+void cutTracks(SlidingWindow& window, std::size_t length) {
+  const std::map<TrackId, PointTrack> whole = std::move(window.points);
+  window.points.clear();
+  for (const auto& [id, track] : whole)
+    for (std::size_t i = 0; i < track.sightings.size(); ++i) {
+      const auto frame = static_cast<std::size_t>(track.sightings[i].frame - window.frames.front().id);
+      const TrackId piece = 1000 * id + (frame + id % length) / length;
+      PointTrack& cut = window.points[piece];
+      cut.id = piece;
+      cut.sightings.push_back(track.sightings[i]);
+    }
+}
+
+TEST_F(InitializerTest, StartsThoughNoPointLastsHalfOfTheBuffer) {
+  const TrackedFlight f = noisyFlight(0.5, ImuSimulatorParams{});
+  SlidingWindow window = bufferOf(f, 0, 20);
+  cutTracks(window, 7);
+  ASSERT_LT(medianDisparityPx(window, 0, 19, true), 0);
+  ASSERT_LT(medianDisparityPx(window, 10, 19, true), 0);
+  ASSERT_EQ(initializer_.initialise(window), "");
+  EXPECT_LT(relativeMotionError(window, f, 0, 38), 0.10);
+  EXPECT_LT(tiltError(window.frames.back(), f.truth(38)), 0.02);
 }
 
 TEST_F(InitializerTest, ACleanStartIsPrecise) {

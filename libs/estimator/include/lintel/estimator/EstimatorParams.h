@@ -124,7 +124,7 @@ struct InitializerParams {
   double point_sigma_px = 0.7;       ///< of a tracked point, with the errors of the calibration, which is held [px]
   double min_parallax_px = 12;       ///< rotation-compensated, median, over the buffer; below: static or waiting
   double max_error_px = 2.0;         ///< median reprojection error of an accepted start
-  double max_scale_sigma = 0.05;     ///< relative standard deviation of the scale of an accepted start
+  double max_scale_sigma = 0.04;     ///< relative standard deviation of the scale of an accepted start
   double max_bias_accel = 1.5;       ///< [m/s^2]
   double bias_gyro_sigma = 0.1;      ///< prior [rad/s]
   double bias_accel_sigma = 0.2;     ///< prior [m/s^2]
