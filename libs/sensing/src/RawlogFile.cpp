@@ -3,6 +3,8 @@
 
 #include <mrpt/obs/CObservation.h>
 #include <mrpt/obs/CObservationIMU.h>
+#include <mrpt/obs/CObservationImage.h>
+#include <mrpt/obs/CObservationStereoImages.h>
 #include <mrpt/obs/CSensoryFrame.h>
 #include <mrpt/serialization/CArchive.h>
 
@@ -36,6 +38,16 @@ void repairFlags(mrpt::obs::CObservation& observation) {
   for (std::size_t i = 0; i < sizeof bytes; ++i) imu->dataIsPresent[i] = bytes[i] != 0;
 }
 
+std::shared_ptr<mrpt::obs::CObservation> leftOf(const mrpt::obs::CObservationStereoImages& pair) {
+  auto left = mrpt::obs::CObservationImage::Create();
+  left->sensorLabel = pair.sensorLabel;
+  left->timestamp = pair.timestamp;
+  left->cameraParams = pair.leftCamera;
+  left->cameraPose = mrpt::poses::CPose3D(pair.cameraPose);
+  left->image = pair.imageLeft;
+  return left;
+}
+
 }  // namespace
 
 RawlogFile::RawlogFile(const std::string& path) : path_(path), stream_(std::make_unique<GzInput>(path)) {}
@@ -47,7 +59,8 @@ std::string RawlogFile::where() const { return path_ + ": entry " + std::to_stri
 std::shared_ptr<mrpt::obs::CObservation> RawlogFile::next() {
   const auto observation = nextAsRead();
   if (observation) repairFlags(*observation);
-  return observation;
+  const auto* pair = dynamic_cast<const mrpt::obs::CObservationStereoImages*>(observation.get());
+  return pair ? leftOf(*pair) : observation;
 }
 
 std::shared_ptr<mrpt::obs::CObservation> RawlogFile::nextAsRead() {

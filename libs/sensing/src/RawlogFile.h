@@ -22,15 +22,17 @@ class RawlogFile {
   explicit RawlogFile(const std::string& path);
   ~RawlogFile();
 
-  /// Null at the end. Throws RecordingError when the file is cut, corrupt or no rawlog.
+  /// Null at the end; a stereo pair is given as the CObservationImage of its left camera. Throws RecordingError when
+  /// the file is cut, corrupt or no rawlog.
   std::shared_ptr<mrpt::obs::CObservation> next();
+
+  /// The same, but with stereo pairs and damaged flags as they are in the file.
+  std::shared_ptr<mrpt::obs::CObservation> nextAsRead();
 
   /// "file: entry N", N counting from 0 as rawlog-edit does.
   std::string where() const;
 
  private:
-  std::shared_ptr<mrpt::obs::CObservation> nextAsRead();
-
   std::string path_;
   std::unique_ptr<GzInput> stream_;
   std::deque<std::shared_ptr<mrpt::obs::CObservation>> pending_;

@@ -87,8 +87,8 @@ Beginning readBeginning(const std::string& path, const RecordingParams& params) 
 void checkBeginning(const Beginning& seen, const std::string& path, const RecordingParams& params) {
   const auto named = [](const std::string& label) { return label.empty() ? "" : " labelled '" + label + "'"; };
   if (seen.images.empty())
-    throw RecordingError(path + ": holds no camera image (CObservationImage)" + named(params.camera) +
-                         ": record one, or name another camera");
+    throw RecordingError(path + ": holds no camera image (CObservationImage, CObservationStereoImages)" +
+                         named(params.camera) + ": record one, or name another camera");
   if (!seen.imus.empty()) return;
   if (seen.has_incomplete_imu)
     throw RecordingError(path + ": its IMU observations" + named(params.imu) +

@@ -58,7 +58,7 @@ std::vector<RecordedSensor> sensorsOfRawlog(const std::string& path) {
   std::map<std::pair<std::string, std::string>, Stamps> found;
   RawlogFile file(path);
   try {
-    while (const auto observation = file.next())
+    while (const auto observation = file.nextAsRead())
       found[{observation->sensorLabel, observation->GetRuntimeClass()->className}].add(timeOf(*observation));
   } catch (const RecordingError&) {  // what is before the damage is listed
     if (found.empty()) throw;

@@ -3,6 +3,7 @@
 #include <mrpt/obs/CObservationComment.h>
 #include <mrpt/obs/CObservationIMU.h>
 #include <mrpt/obs/CObservationImage.h>
+#include <mrpt/obs/CObservationStereoImages.h>
 
 #include <algorithm>
 #include <cstring>
@@ -11,6 +12,7 @@
 #include "TinyEuroc.h"
 #include "TinyRawlog.h"
 #include "lintel/sensing/EurocToRawlog.h"
+#include "lintel/sensing/RecordedSensors.h"
 
 namespace lintel::test {
 namespace {
@@ -136,10 +138,52 @@ TEST_F(RawlogRecordingTest, LabelsOfOthersAreTaken) {
   EXPECT_EQ(readAll(rawlog_).steps.size(), 20u);
   RecordingParams params;
   params.camera = "BACK";
-  EXPECT_THAT(openingError(rawlog_, params), HasSubstr("no camera image (CObservationImage) labelled 'BACK'"));
+  EXPECT_THAT(openingError(rawlog_, params),
+              HasSubstr("no camera image (CObservationImage, CObservationStereoImages) labelled 'BACK'"));
   params.camera = "FRONT";
   params.imu = "GPS";
   EXPECT_THAT(openingError(rawlog_, params), HasSubstr("no IMU sample (CObservationIMU) labelled 'GPS'"));
+}
+
+TEST_F(RawlogRecordingTest, OfAStereoPairTheLeftImageIsTaken) {
+  for (const bool embed : {false, true}) {
+    convert(embed);
+    edit(rawlog_, [](auto& observations) {
+      for (auto& observation : observations) {
+        const auto image = as<CObservationImage>(observation);
+        if (!image) continue;
+        auto pair = mrpt::obs::CObservationStereoImages::Create();
+        pair->sensorLabel = image->sensorLabel;
+        pair->timestamp = image->timestamp;
+        pair->leftCamera = image->cameraParams;
+        pair->cameraPose = mrpt::poses::CPose3DQuat(image->cameraPose);
+        pair->imageLeft = image->image;
+        pair->hasImageRight = false;
+        observation = pair;
+      }
+    });
+    expectSameAsFolder();
+    const auto sensors = recordedSensors(rawlog_, {});
+    EXPECT_TRUE(std::any_of(sensors.begin(), sensors.end(), [](const RecordedSensor& s) {
+      return s.kind.find("CObservationStereoImages") != std::string::npos;
+    }));
+  }
+}
+
+/// MRPT stores colour images as JPEG.
+TEST_F(RawlogRecordingTest, ColourImagesInJpegAreRead) {
+  convert(true);
+  edit(rawlog_, [](auto& observations) {
+    for (auto& observation : observations)
+      if (const auto image = as<CObservationImage>(observation)) image->image = image->image.colorImage();
+  });
+  const Everything gray = readAll(root_), colour = readAll(rawlog_);
+  ASSERT_EQ(gray.steps.size(), colour.steps.size());
+  const GrayImage &a = *gray.steps[3].frame.image, &b = *colour.steps[3].frame.image;
+  ASSERT_EQ(a.pixels.size(), b.pixels.size());
+  double difference = 0;
+  for (std::size_t i = 0; i < a.pixels.size(); ++i) difference += std::abs(a.pixels[i] - b.pixels[i]);
+  EXPECT_LT(difference / static_cast<double>(a.pixels.size()), 8);
 }
 
 TEST_F(RawlogRecordingTest, SecondCameraIsChosenByName) {
