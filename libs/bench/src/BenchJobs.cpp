@@ -2,10 +2,9 @@
 #include "lintel/bench/BenchJobs.h"
 
 #include <cstdio>
-#include <fstream>
-#include <iterator>
 
 #include "lintel/core/ChildProcess.h"
+#include "lintel/core/TextFile.h"
 #include "lintel/core/Version.h"
 
 namespace lintel {
@@ -18,12 +17,6 @@ std::string sixDigits(double value) {
   char text[32];
   std::snprintf(text, sizeof text, "%g", value);
   return text;
-}
-
-std::string contentOf(const std::string& path) {
-  if (path.empty()) return "";
-  std::ifstream file(path, std::ios::binary);
-  return {std::istreambuf_iterator<char>(file), {}};
 }
 
 /// FNV-1a: short, and the same everywhere.
@@ -42,9 +35,9 @@ std::string keyOf(const BenchJob& job, const BenchRecording& recording, const Be
                                        sixDigits(job.from_s),
                                        sixDigits(job.to_s),
                                        shellLine(job.simulation),
-                                       contentOf(configuration.config),
+                                       bytesOfFile(configuration.config),
                                        shellLine(configuration.settings),
-                                       recording.groundtruth.empty() ? "" : contentOf(recording.groundtruth)};
+                                       bytesOfFile(recording.groundtruth)};
   return hashOf(shellLine(words));
 }
 

@@ -2,6 +2,7 @@
 #include "lintel/core/TextFile.h"
 
 #include <fstream>
+#include <limits>
 
 namespace lintel {
 
@@ -20,6 +21,16 @@ std::string textOfFile(const std::string& path, void (*throw_error)(const std::s
   }
   throw_error(path + ": longer than " + std::to_string(most >> 20) + " MB; give a text file");
   return {};
+}
+
+std::string bytesOfFile(const std::string& path) {
+  struct Unreadable {};
+  try {
+    return textOfFile(
+        path, [](const std::string&) { throw Unreadable(); }, std::numeric_limits<std::size_t>::max());
+  } catch (const Unreadable&) {
+    return {};
+  }
 }
 
 }  // namespace lintel

@@ -36,5 +36,14 @@ TEST(TextFile, ThatIsNoneIsRefused) {
   EXPECT_EQ(refusal("/dev/zero"), "/dev/zero: longer than 16 MB; give a text file");
 }
 
+TEST(TextFile, BytesAreNoneOfWhatCannotBeRead) {
+  const test::TempFolder folder;
+  const std::string bytes("a\0b\n", 4);
+  EXPECT_EQ(bytesOfFile(folder.write("a", bytes)), bytes);
+  EXPECT_EQ(bytesOfFile(folder / "absent"), "");
+  EXPECT_EQ(bytesOfFile(folder.path().string()), "");
+  EXPECT_EQ(bytesOfFile(""), "");
+}
+
 }  // namespace
 }  // namespace lintel

@@ -3,6 +3,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <deque>
+#include <optional>
 
 #include "ParamsCheck.h"
 #include "initialisation/Initializer.h"
@@ -29,7 +31,11 @@ namespace lintel {
 
 namespace {
 
-constexpr int kTrialFrames = 30;  // window frames that a start is on trial: as long as the window reaches, and again
+// Window frames that a start is on trial: as long as the window reaches, and again.
+constexpr int kTrialFrames = 30;
+/// Window frames that come in before a start is tried again in place of a wrong one: they show more than it was made
+/// of.
+constexpr int kFramesBeforeRetrial = 5;
 
 /// When a solve may end, see SolveLimits::min_move. After it mostly landmarks move, one by one: waiting for them took a
 /// quarter of the solver's time and made the trajectory a few per cent better on average.
@@ -65,13 +71,19 @@ class Estimator::Impl {
   ImuNoise noise() const;
   WindowUpdate skipFrame(const FrameTracks& tracks);
   void addFrame(const FrameTracks& tracks);
+  void remember(const FrameTracks& tracks);
   void initialise(WindowUpdate& update);
+  void replaceWrongStart(WindowUpdate& update);
   void track(WindowUpdate& update);
   void solve(WindowUpdate& update);
   void shrink(bool second_newest_is_keyframe, WindowUpdate& update);
   void dropOldest(WindowUpdate& update);
   void dropSecondNewest(WindowUpdate& update);
-  void fail(const std::string& reason, WindowUpdate& update);
+  bool onTrial() const { return tracking_ && tracks_since_start_ <= kTrialFrames; }
+  void fail(Failure failure, const std::string& reason, WindowUpdate& update);
+  void handOver(WindowUpdate& update);
+  void clearWindow(bool keep_calibration);
+  void fillFromMemory();
   void moveToAnchor();
   void countLandmarks(WindowUpdate& update) const;
   void fillPose(WindowUpdate& update);
@@ -88,6 +100,16 @@ class Estimator::Impl {
   std::int64_t newest_t_ns_ = 0;
   int blind_frames_ = 0, tracks_since_start_ = 0;
   Pose anchor_T_w_b_;  // where a new start continues
+
+  /// A window frame as it came in.
+  struct Input {
+    FrameTracks tracks;
+    ImuBatch imu;  // since the window frame before
+  };
+  std::deque<Input> memory_;                      // of the last frames, for a start that replaces a wrong one
+  int frames_to_wait_ = 0;                        // before it is tried
+  std::int64_t first_pose_ns_ = 0;                // of the present start
+  std::optional<std::int64_t> replaces_from_ns_;  // first pose of the wrong start that is to be replaced
 };
 
 WindowUpdate Estimator::Impl::process(const FrameTracks& tracks, const ImuBatch& imu) {
@@ -97,10 +119,11 @@ WindowUpdate Estimator::Impl::process(const FrameTracks& tracks, const ImuBatch&
   const bool enters =
       frames_seen_++ % static_cast<std::uint64_t>(framesAtRate(params_.every_nth_frame, rig_.camera_rate_hz)) == 0;
   if (!imu_ok && !window_.frames.empty()) {
-    fail("the IMU has a gap", update);
+    fail(Failure::kInterrupted, "the IMU has a gap", update);
   } else if (!enters) {
     update = skipFrame(tracks);
   } else {
+    remember(tracks);
     addFrame(tracks);
     tracking_ ? track(update) : initialise(update);
   }
@@ -144,6 +167,13 @@ WindowUpdate Estimator::Impl::skipFrame(const FrameTracks& tracks) {
   return update;
 }
 
+/// While a start may still prove wrong, what another one would be made of.
+void Estimator::Impl::remember(const FrameTracks& tracks) {
+  if (tracking_ && !onTrial()) return memory_.clear();
+  memory_.push_back({tracks, pending_imu_});
+  if (static_cast<int>(memory_.size()) > params_.initializer.max_frames) memory_.pop_front();
+}
+
 void Estimator::Impl::addFrame(const FrameTracks& tracks) {
   WindowFrame frame;
   frame.id = next_frame_id_++;
@@ -171,6 +201,11 @@ void Estimator::Impl::initialise(WindowUpdate& update) {
     window_.removeFrame(window_.frames.front().id, false);
     window_.frames.front().imu.reset();
   }
+  if (frames_to_wait_ > 0) {
+    --frames_to_wait_;
+    update.reason = "the start before was wrong";
+    return;
+  }
   SlidingWindow buffer = window_;
   buffer.frames.front().imu.reset();
   update.reason = initializer_.initialise(buffer);
@@ -182,8 +217,19 @@ void Estimator::Impl::initialise(WindowUpdate& update) {
   unroll(window_);
   solve(update);
   update.status = EstimatorStatus::kTracking;
+  first_pose_ns_ = update.t_ns;
+  if (replaces_from_ns_) replaceWrongStart(update);
   while (static_cast<int>(window_.frames.size()) > params_.keyframes) dropOldest(update);
   fillPose(update);
+}
+
+/// Poses of what the wrong start had given some for.
+void Estimator::Impl::replaceWrongStart(WindowUpdate& update) {
+  for (const WindowFrame& frame : window_.frames)
+    if (frame.t_ns >= *replaces_from_ns_ && frame.t_ns < update.t_ns)
+      update.replaced.emplace_back(frame.t_ns, frame.T_w_b());
+  if (!update.replaced.empty()) first_pose_ns_ = update.replaced.front().first;
+  replaces_from_ns_.reset();
 }
 
 void Estimator::Impl::moveToAnchor() {
@@ -199,13 +245,14 @@ void Estimator::Impl::track(WindowUpdate& update) {
   solve(update);
   newest.blind = pointsInNewest(window_) + linesInNewest(window_) < params_.failure.min_points && !newest.at_rest;
   blind_frames_ = newest.blind ? blind_frames_ + 1 : 0;
+  ++tracks_since_start_;
   std::string failure = findFailure(window_, params_.failure, predicted);
-  const bool on_trial = tracks_since_start_++ < kTrialFrames;
-  if (failure.empty() && on_trial &&
+  if (failure.empty() && onTrial() &&
       biasOf(window_.frames.back().motion.data()).accel.norm() > trialBiasAccel(params_.initializer))
-    failure = "the start was wrong: it led to an implausible accelerometer bias";
-  if (failure.empty() && blind_frames_ > params_.failure.max_blind_frames) failure = "too few features are tracked";
-  if (!failure.empty()) return fail(failure, update);
+    failure = "it led to an implausible accelerometer bias";
+  if (!failure.empty()) return fail(onTrial() ? Failure::kWrongStart : Failure::kDiverged, failure, update);
+  if (blind_frames_ > params_.failure.max_blind_frames)
+    return fail(Failure::kInterrupted, "too few features are tracked", update);
   update.keyframe = keyframe;
   update.at_rest = newest.at_rest;
   update.blind = newest.blind;
@@ -260,32 +307,60 @@ void Estimator::Impl::dropSecondNewest(WindowUpdate& update) {
   window_.removeFrame(leaving, false);
 }
 
-void Estimator::Impl::fail(const std::string& reason, WindowUpdate& update) {
+void Estimator::Impl::fail(Failure failure, const std::string& reason, WindowUpdate& update) {
+  const bool start_was_wrong = failure == Failure::kWrongStart;
+  update.reason = start_was_wrong ? "the start was wrong: " + reason : reason;
+  // what a wrong start made of the calibration is wrong, too
+  const bool keep_calibration = !onTrial() && window_.extrinsics.allFinite() && window_.correction.allFinite();
   if (tracking_) {
-    // what was known before the frame that failed is kept
-    anchor_T_w_b_ = window_.frames[window_.frames.size() > 1 ? window_.frames.size() - 2 : 0].T_w_b();
-    if (window_.frames.size() > 1) {
-      const FrameId failed = window_.frames.back().id;
-      WindowUpdate nothing;
-      retireTracks(window_, failed, false, nothing);
-      window_.removeFrame(failed, false);
-    }
-    retireAll(window_, update);
     update.status = EstimatorStatus::kLost;
+    update.failure = failure;
+    if (!start_was_wrong) handOver(update);
   }
-  update.reason = reason;
+  clearWindow(keep_calibration);
+  tracking_ = false;
+  replaces_from_ns_.reset();
+  if (start_was_wrong) {
+    replaces_from_ns_ = first_pose_ns_;
+    frames_to_wait_ = kFramesBeforeRetrial;
+    fillFromMemory();
+  } else {
+    memory_.clear();
+    frames_to_wait_ = 0;
+  }
+}
+
+/// What was known before the frame that failed.
+void Estimator::Impl::handOver(WindowUpdate& update) {
+  anchor_T_w_b_ = window_.frames[window_.frames.size() > 1 ? window_.frames.size() - 2 : 0].T_w_b();
+  if (window_.frames.size() > 1) {
+    const FrameId failed = window_.frames.back().id;
+    WindowUpdate nothing;
+    retireTracks(window_, failed, false, nothing);
+    window_.removeFrame(failed, false);
+  }
+  retireAll(window_, update);
+}
+
+void Estimator::Impl::clearWindow(bool keep_calibration) {
   const SlidingWindow former = std::move(window_);
   window_ = SlidingWindow(rig_);
-  window_.extrinsics = former.extrinsics;
-  window_.correction = former.correction;
-  // what a wrong start made of the calibration is wrong, too
-  if (tracks_since_start_ <= kTrialFrames || !former.extrinsics.allFinite() || !former.correction.allFinite()) {
+  if (keep_calibration) {
+    window_.extrinsics = former.extrinsics;
+    window_.correction = former.correction;
+  } else {
     window_.extrinsics = toBlock(rig_.T_b_c);
     window_.correction.setZero();
   }
   window_.relinearise();  // what comes in is linearised about what is kept
-  tracking_ = false;
   pending_imu_.clear();
+}
+
+void Estimator::Impl::fillFromMemory() {
+  for (const Input& input : memory_) {
+    pending_imu_ = input.imu;
+    addFrame(input.tracks);
+  }
 }
 
 void Estimator::Impl::countLandmarks(WindowUpdate& update) const {
@@ -320,6 +395,9 @@ WindowUpdate Estimator::Impl::finish() {
   window_ = SlidingWindow(rig_);
   tracking_ = false;
   pending_imu_.clear();
+  memory_.clear();
+  frames_to_wait_ = 0;
+  replaces_from_ns_.reset();
   return update;
 }
 

@@ -10,6 +10,7 @@
 
 #include "TestWindow.h"
 #include "lintel/geometry/Alignment.h"
+#include "lintel/geometry/Frames.h"
 #include "lintel/geometry/Rotation.h"
 
 namespace lintel {
@@ -299,6 +300,7 @@ TEST(Estimator, AnImuGapIsAFailureAndItStartsAgainWhereItWas) {
   ASSERT_TRUE(updates[gap - 1].hasPose());
   EXPECT_EQ(updates[gap].status, EstimatorStatus::kLost);
   EXPECT_EQ(updates[gap].reason, "the IMU has a gap");
+  EXPECT_EQ(updates[gap].failure, Failure::kInterrupted);
   EXPECT_FALSE(updates[gap].keyframes.empty()) << "what was computed before is handed over";
   EXPECT_FALSE(updates[gap].points.empty());
   EXPECT_EQ(lostOf(updates), 1);
@@ -373,6 +375,65 @@ TEST(Estimator, FiveSecondsOfDarknessAreCarriedByTheImu) {
   EXPECT_FALSE(updates.end()[-4].blind);
   for (std::size_t k = dark; k < flight.sim.frames.size(); ++k) ASSERT_TRUE(updates[k].hasPose()) << k;
   EXPECT_LT(positionError(updates, flight), 0.1) << "one frame before and after";
+}
+
+/// The flight with an accelerometer that shows `share` of the motion in the first `frames`: gravity stays.
+TrackedFlight withSlowStart(TrackedFlight flight, std::size_t frames, double share) {
+  const Eigen::Vector3d up_w = -gravityW();
+  for (std::size_t k = 1; k < frames; ++k) {
+    const InertialTruth &a = flight.truth(k - 1), &b = flight.truth(k);
+    for (ImuSample& sample : flight.sim.frames[k].imu) {
+      const double s = static_cast<double>(sample.t_ns - flight.sim.frames[k - 1].tracks.t_ns) /
+                       static_cast<double>(flight.sim.frames[k].tracks.t_ns - flight.sim.frames[k - 1].tracks.t_ns);
+      const Eigen::Vector3d up_b = a.state.T_w_b.q.slerp(s, b.state.T_w_b.q).conjugate() * up_w;
+      sample.accel = up_b + share * (sample.accel - up_b);
+    }
+  }
+  return flight;
+}
+
+/// The trajectory that is left when what wrong starts gave is withdrawn.
+std::vector<std::pair<std::int64_t, Pose>> trajectoryOf(const std::vector<WindowUpdate>& updates) {
+  std::vector<std::pair<std::int64_t, Pose>> poses;
+  std::size_t settled = 0;
+  for (const WindowUpdate& u : updates) {
+    poses.insert(poses.end(), u.replaced.begin(), u.replaced.end());
+    if (u.hasPose()) poses.emplace_back(u.t_ns, u.T_w_b);
+    if (u.startWasWrong()) poses.resize(settled);
+    if (u.status == EstimatorStatus::kLost) settled = poses.size();
+  }
+  return poses;
+}
+
+TEST(Estimator, AWrongStartIsWithdrawnAndReplacedWithoutAGap) {
+  const std::size_t wrong = 36;
+  const TrackedFlight flight = withSlowStart(fly(ImuSimulatorParams{}, tracksFor(9, 0.3)), wrong, 2);
+  const auto updates = run(flight);
+  ASSERT_EQ(lostOf(updates), 1);
+  std::size_t lost = 0, first = 0;
+  while (!updates[first].hasPose()) ++first;
+  while (updates[lost].status != EstimatorStatus::kLost) ++lost;
+  EXPECT_LT(first, wrong);
+  EXPECT_LT(lost, first + 60);
+  EXPECT_TRUE(updates[lost].startWasWrong());
+  EXPECT_EQ(updates[lost].reason.find("the start was wrong"), 0u) << updates[lost].reason;
+  EXPECT_TRUE(updates[lost].keyframes.empty());
+  EXPECT_TRUE(updates[lost].points.empty());
+  EXPECT_TRUE(updates[lost].lines.empty());
+  const auto trajectory = trajectoryOf(updates);
+  EXPECT_LE(trajectory.front().first, flight.sim.frames[wrong].tracks.t_ns) << "where the accelerometer becomes right";
+  std::vector<Eigen::Vector3d> estimate, truth;
+  for (std::size_t i = 0, k = 0; i < trajectory.size(); ++i) {
+    if (i > 0) EXPECT_LE(trajectory[i].first - trajectory[i - 1].first, 100'000'000) << "a gap";
+    if (i > 0) EXPECT_GT(trajectory[i].first, trajectory[i - 1].first);
+    while (flight.sim.frames[k].tracks.t_ns != trajectory[i].first) ++k;
+    estimate.push_back(trajectory[i].second.p);
+    truth.push_back(flight.truth(k).state.T_w_b.p);
+  }
+  const Similarity T = alignPositions(AlignmentKind::kYaw, estimate, truth);
+  double sum = 0;
+  for (std::size_t i = 0; i < truth.size(); ++i) sum += (T * estimate[i] - truth[i]).squaredNorm();
+  EXPECT_LT(std::sqrt(sum / static_cast<double>(truth.size())), 0.1);
 }
 
 TEST(Estimator, FramesBetweenWindowFramesArePropagated) {

@@ -1,13 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <cmath>
 #include <cstring>
-#include <fstream>
-#include <iterator>
 #include <nlohmann/json.hpp>
 
 #include "ViewerPage.h"
 #include "Writers.h"
 #include "lintel/core/Base64.h"
+#include "lintel/core/TextFile.h"
 
 // One page that needs no network: page/viewer.html with three.js and the map put into it.
 namespace lintel {
@@ -18,10 +17,10 @@ using Json = nlohmann::ordered_json;
 
 std::string library(const std::string& name) {
   const std::string path = std::string(kThreeFolder) + "/" + name;
-  std::ifstream file(path, std::ios::binary);
-  if (!file)
+  std::string text = bytesOfFile(path);
+  if (text.empty())
     throw ExportError("the html export needs three.js: " + path + " is not there; install the package libjs-three");
-  return {std::istreambuf_iterator<char>(file), {}};
+  return text;
 }
 
 /// Little-endian floats, base64.

@@ -73,10 +73,22 @@ MapBuilder::MapBuilder(const Rig& rig, const MapParams& params) : params_(params
 }
 
 void MapBuilder::add(const WindowUpdate& update) {
+  if (update.startWasWrong()) return withdrawStart();
+  material_.trajectory.insert(material_.trajectory.end(), update.replaced.begin(), update.replaced.end());
   if (update.hasPose()) material_.trajectory.emplace_back(update.t_ns, update.T_w_b);
   material_.keyframes.insert(material_.keyframes.end(), update.keyframes.begin(), update.keyframes.end());
   for (const RetiredPoint& point : update.points) material_.points.push_back(recordOf(point));
   for (const RetiredLine& line : update.lines) material_.lines.push_back(recordOf(line));
+  if (update.status == EstimatorStatus::kLost)
+    settled_ = {material_.keyframes.size(), material_.points.size(), material_.lines.size(),
+                material_.trajectory.size()};
+}
+
+void MapBuilder::withdrawStart() {
+  material_.keyframes.resize(settled_.keyframes);
+  material_.points.resize(settled_.points);
+  material_.lines.resize(settled_.lines);
+  material_.trajectory.resize(settled_.poses);
 }
 
 void MapBuilder::setCalibration(const Rig& rig, double time_offset_s) {

@@ -72,6 +72,40 @@ class MapBuilderTest : public testing::Test {
   WindowUpdate update_;
 };
 
+TEST_F(MapBuilderTest, WhatAWrongStartGaveIsTakenAway) {
+  MapBuilder builder(rig_, params_);
+  WindowUpdate before = update_;
+  before.lines = {lineOf(3, upright_)};
+  before.status = EstimatorStatus::kLost;
+  builder.add(before);
+  WindowUpdate wrong;
+  wrong.t_ns = 5000;
+  wrong.status = EstimatorStatus::kTracking;
+  wrong.lines = {lineOf(4, upright_)};
+  wrong.points = {pointOf(5, upright_.start)};
+  wrong.keyframes = {update_.keyframes[0]};
+  wrong.keyframes[0].id = 7;
+  builder.add(wrong);
+  WindowUpdate withdrawn;
+  withdrawn.t_ns = 5100;
+  withdrawn.status = EstimatorStatus::kLost;
+  withdrawn.failure = Failure::kWrongStart;
+  builder.add(withdrawn);
+  WindowUpdate again;
+  again.t_ns = 5200;
+  again.status = EstimatorStatus::kTracking;
+  again.replaced = {{5000, Pose()}, {5100, Pose()}};
+  builder.add(again);
+  const MapMaterial material = builder.material();
+  EXPECT_EQ(material.keyframes.size(), 5u);
+  EXPECT_TRUE(material.points.empty());
+  ASSERT_EQ(material.lines.size(), 1u);
+  EXPECT_EQ(material.lines[0].id, 3u);
+  ASSERT_EQ(material.trajectory.size(), 3u);
+  EXPECT_EQ(material.trajectory[0].first, 5000);
+  EXPECT_EQ(material.trajectory[2].first, 5200);
+}
+
 TEST_F(MapBuilderTest, SegmentEndsAreWhereTheyWereSeen) {
   update_.lines = {lineOf(3, upright_)};
   const LineMap map = build();

@@ -39,8 +39,23 @@ WindowUpdate EstimationStage::process(const TrackedFrame& frame) {
     loops_.add(frame.step.frame, frame.tracks.points, update);
   }
   if (edges_) edges_->add(frame.step.frame, update, s.edges);
-  if (update.hasPose()) result_.trajectory.push_back({update.t_ns, update.T_w_b});
   return update;
+}
+
+void EstimationStage::addPoses(const WindowUpdate& update) {
+  std::vector<OdometryPose>& trajectory = result_.trajectory;
+  for (const auto& [t_ns, T_w_b] : update.replaced) trajectory.push_back({t_ns, T_w_b});
+  if (update.hasPose()) trajectory.push_back({update.t_ns, update.T_w_b});
+  if (update.startWasWrong()) return withdrawStart();
+  if (update.status != EstimatorStatus::kLost) return;
+  settled_poses_ = trajectory.size();
+  settled_blind_ = result_.statistics.blind.size();
+}
+
+void EstimationStage::withdrawStart() {
+  result_.trajectory.resize(settled_poses_);
+  result_.statistics.blind.resize(settled_blind_);
+  was_blind_ = false;
 }
 
 void EstimationStage::finish(const FinishOptions& options) {
@@ -102,14 +117,21 @@ void EstimationStage::finishMap(const FinishOptions& options) {
   result_.lines_beside = spaceLines(configuration_.map, result_.map);
 }
 
+/// After the first frame.
+double EstimationStage::secondsOf(std::int64_t t_ns) const {
+  return 1e-9 * static_cast<double>(t_ns - result_.statistics.first_frame_ns);
+}
+
 void EstimationStage::count(const WindowUpdate& update) {
   OdometryStatistics& s = result_.statistics;
   if (s.frames++ == 0) s.first_frame_ns = update.t_ns;
   s.last_frame_ns = update.t_ns;
-  const double t_s = 1e-9 * static_cast<double>(update.t_ns - s.first_frame_ns);
+  const double t_s = secondsOf(update.t_ns);
+  addPoses(update);
+  s.frames_with_pose = result_.trajectory.size();
+  s.first_pose_s = result_.trajectory.empty() ? -1 : secondsOf(result_.trajectory.front().t_ns);
   if (update.hasPose()) {
-    ++s.frames_with_pose;
-    if (s.first_pose_s < 0) s.first_pose_s = t_s;
+    if (s.first_start_s < 0) s.first_start_s = t_s;
   } else if (update.status == EstimatorStatus::kInitializing && update.reason != "between window frames") {
     s.last_wait = update.reason;
   }

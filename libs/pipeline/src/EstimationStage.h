@@ -30,7 +30,10 @@ class EstimationStage {
   void finishMap(const FinishOptions& options);
   void refineMap(MapMaterial& material, const FinishOptions& options);
   void densifyMap(MapMaterial& material, const FinishOptions& options);
+  void addPoses(const WindowUpdate& update);
+  void withdrawStart();
   void count(const WindowUpdate& update);
+  double secondsOf(std::int64_t t_ns) const;
   void countWindow(const WindowUpdate& update);
   void countBlind(bool blind, double t_s);
 
@@ -43,6 +46,7 @@ class EstimationStage {
   const BatchRefinement refinement_;
   OdometryResult& result_;
   bool was_blind_ = false;
+  std::size_t settled_poses_ = 0, settled_blind_ = 0;  ///< of former starts
 };
 
 }  // namespace lintel

@@ -37,6 +37,7 @@ bool LoopStage::isWanted(const WindowUpdate& update) const {
 }
 
 void LoopStage::add(const Frame& frame, const std::vector<PointObservation>& tracked, const WindowUpdate& update) {
+  if (update.startWasWrong()) withdrawRun();
   if (update.status == EstimatorStatus::kLost) ++run_;
   if (!isWanted(update)) return;
   at_rest_ = update.at_rest;
@@ -46,6 +47,13 @@ void LoopStage::add(const Frame& frame, const std::vector<PointObservation>& tra
   double travelled_m = frames_.empty() ? 0 : frames_.back().travelled_m;
   if (!frames_.empty() && frames_.back().run == run_) travelled_m += (T_w_c.p - frames_.back().T_w_c.p).norm();
   frames_.push_back({T_w_c, run_, travelled_m, views_.back().get()});
+}
+
+void LoopStage::withdrawRun() {
+  while (!frames_.empty() && frames_.back().run == run_) {
+    frames_.pop_back();
+    views_.pop_back();
+  }
 }
 
 LoopResult LoopStage::find(const MapMaterial& material, const std::function<bool(double)>& progress) const {

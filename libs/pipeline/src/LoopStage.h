@@ -28,6 +28,7 @@ class LoopStage {
 
  private:
   bool isWanted(const WindowUpdate& update) const;
+  void withdrawRun();
 
   Rig rig_;
   PlaceParams params_;

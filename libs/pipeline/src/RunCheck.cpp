@@ -55,6 +55,16 @@ void RunCheck::add(const TrackedFrame& frame, const WindowUpdate& update) {
   noise_.add(imu);
   watchSpeed(update);
   watchImu(update);
+  watchFailures(update);
+}
+
+void RunCheck::watchFailures(const WindowUpdate& update) {
+  if (first_ns_ < 0) first_ns_ = update.t_ns;
+  if (update.failure != Failure::kDiverged || !divergence_.empty()) return;
+  char text[40];
+  std::snprintf(text, sizeof text,
+                "the estimate diverged at %.1f s: ", 1e-9 * static_cast<double>(update.t_ns - first_ns_));
+  divergence_ = text + update.reason;
 }
 
 void RunCheck::watchImu(const WindowUpdate& update) {
@@ -108,13 +118,14 @@ std::map<std::string, double> RunCheck::evidence() const {
 
 std::string RunCheck::symptom(const OdometryStatistics& s, const Rig& estimated) const {
   char text[200];
-  const double after_first = static_cast<double>(s.last_frame_ns - s.first_frame_ns) * 1e-9 - s.first_pose_s;
+  const double after_first = static_cast<double>(s.last_frame_ns - s.first_frame_ns) * 1e-9 - s.first_start_s;
   const double all = static_cast<double>(s.last_frame_ns - s.first_frame_ns) * 1e-9;
-  const double expected = s.first_pose_s < 0 || all <= 0 ? 0 : static_cast<double>(s.frames) * after_first / all;
+  const double expected = s.first_start_s < 0 || all <= 0 ? 0 : static_cast<double>(s.frames) * after_first / all;
   if (!(largest_acceleration_ < kLargestAcceleration)) {
     std::snprintf(text, sizeof text, "the estimate diverged: it gained %.0f m/s within 5 s", 5 * largest_acceleration_);
     return text;
   }
+  if (!divergence_.empty()) return divergence_;
   if (s.resets > 0 && static_cast<double>(s.frames_with_pose) < kLeastShareWithPose * expected) {
     std::snprintf(text, sizeof text, "the estimate did not last: %zu starts, poses for %.0f %% of the frames",
                   s.resets + 1, 100 * static_cast<double>(s.frames_with_pose) / static_cast<double>(s.frames));

@@ -46,6 +46,7 @@ class RunCheck {
 
   void watchSpeed(const WindowUpdate& update);
   void watchImu(const WindowUpdate& update);
+  void watchFailures(const WindowUpdate& update);
   /// Of an estimate that is wrong; empty: none.
   std::string symptom(const OdometryStatistics& statistics, const Rig& estimated) const;
   /// Where the residuals of the IMU are too large for its noise; empty: nowhere.
@@ -62,6 +63,8 @@ class RunCheck {
   std::vector<double> imu_misfits_;        ///< squared, of nine degrees of freedom, between keyframes
   std::vector<double> biases_gyro_, biases_accel_;
   Eigen::Vector3d bias_gyro_ = Eigen::Vector3d::Zero();
+  std::string divergence_;           ///< the first; empty: none
+  std::int64_t first_ns_ = -1;       ///< of the frames
   std::deque<Speed> speeds_;         ///< of the last seconds, without a reset in between
   double largest_acceleration_ = 0;  ///< that lasted as long [m/s^2]
 };

@@ -78,6 +78,17 @@ class LoopStageTest : public testing::Test {
   std::vector<std::uint8_t> wall_;
 };
 
+TEST_F(LoopStageTest, FramesOfAWrongStartAreForgotten) {
+  LoopStage stage(rig_, {});
+  MapMaterial material;
+  fly(stage, 0, material);
+  WindowUpdate wrong;
+  wrong.status = EstimatorStatus::kLost;
+  wrong.failure = Failure::kWrongStart;
+  stage.add(frameAt(0, 0), {}, wrong);
+  EXPECT_EQ(stage.find(material, {}).places.described, 0u);
+}
+
 TEST_F(LoopStageTest, TheWayBackIsSeenAgainAndTheDriftIsMeasured) {
   PlaceParams params;
   params.interval_s = 0.4;

@@ -27,7 +27,7 @@ std::string verdictOf(double gravity, double acceleration, std::size_t resets = 
   const auto image = std::make_shared<GrayImage>(GrayImage{64, 64, std::vector<std::uint8_t>(64 * 64, 100)});
   std::int64_t t_ns = 1'000'000'000;
   statistics.first_frame_ns = t_ns;
-  statistics.first_pose_s = 0;
+  statistics.first_start_s = 0;
   for (int frame = 0; frame < frames; ++frame) {
     TrackedFrame tracked;
     tracked.step.frame.image = image;
@@ -71,6 +71,27 @@ TEST(RunCheck, AWrongGravityIsNamedFirst) {
 TEST(RunCheck, ADivergedRunIsNoGoodOne) {
   EXPECT_NE(verdictOf(9.81, 8).find("diverged"), std::string::npos) << verdictOf(9.81, 8);
   EXPECT_NE(verdictOf(9.81, std::nan("")), "");
+}
+
+TEST(RunCheck, AFailureWithoutDataIsNoDivergence) {
+  for (const Failure failure : {Failure::kInterrupted, Failure::kWrongStart, Failure::kDiverged}) {
+    RunCheck check{givenRig()};
+    TrackedFrame tracked;
+    tracked.step.frame.image = std::make_shared<GrayImage>(GrayImage{64, 64, std::vector<std::uint8_t>(64 * 64, 100)});
+    WindowUpdate update;
+    check.add(tracked, update);
+    update.t_ns = 2'500'000'000;
+    update.status = EstimatorStatus::kLost;
+    update.failure = failure;
+    update.reason = "the accelerometer bias is implausible";
+    check.add(tracked, update);
+    OdometryStatistics statistics;
+    statistics.frames = statistics.frames_with_pose = 100;
+    statistics.last_frame_ns = 5'000'000'000;
+    const std::string verdict = check.verdict(statistics, givenRig());
+    const bool said = verdict.find("diverged at 2.5 s: the accelerometer bias is implausible") != std::string::npos;
+    EXPECT_EQ(said, failure == Failure::kDiverged) << verdict;
+  }
 }
 
 TEST(RunCheck, ACalibrationThatTheEstimateLeft) {
@@ -123,7 +144,7 @@ std::string verdictWithAccelerometer(bool swapped, double jump_m) {
     ++statistics.frames;
   }
   statistics.last_frame_ns = 30'000'000'000;
-  statistics.first_pose_s = 0;
+  statistics.first_start_s = 0;
   statistics.frames_with_pose = 300;
   return check.verdict(statistics, givenRig());
 }

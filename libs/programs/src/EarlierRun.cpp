@@ -3,24 +3,14 @@
 
 #include <algorithm>
 #include <filesystem>
-#include <fstream>
-#include <iterator>
 #include <nlohmann/json.hpp>
 
 #include "RunFolder.h"
+#include "lintel/core/TextFile.h"
 
 namespace lintel {
 
 namespace fs = std::filesystem;
-
-namespace {
-
-std::string textOf(const fs::path& path) {
-  std::ifstream file(path, std::ios::binary);
-  return {std::istreambuf_iterator<char>(file), {}};
-}
-
-}  // namespace
 
 EarlierRun EarlierRun::in(const std::string& folder) {
   EarlierRun run;
@@ -28,8 +18,8 @@ EarlierRun EarlierRun::in(const std::string& folder) {
   if (!killed && !fs::exists(fs::path(folder) / "trajectory.tum")) return run;
   run.state = State::kBroken;
   run.reason = "it was killed";
-  run.configuration = textOf(fs::path(folder) / "config.yaml");
-  const auto statistics = nlohmann::json::parse(textOf(fs::path(folder) / "stats.json"), nullptr, false);
+  run.configuration = bytesOfFile(fs::path(folder) / "config.yaml");
+  const auto statistics = nlohmann::json::parse(bytesOfFile(fs::path(folder) / "stats.json"), nullptr, false);
   if (killed || !statistics.is_object()) return run;
   try {
     run.command = statistics.at("command").get<std::vector<std::string>>();

@@ -5,9 +5,7 @@
 #include <chrono>
 #include <cstdio>
 #include <filesystem>
-#include <fstream>
 #include <iomanip>
-#include <iterator>
 #include <optional>
 #include <ostream>
 #include <stdexcept>
@@ -20,6 +18,7 @@
 #include "RunFolder.h"
 #include "StopSignals.h"
 #include "lintel/core/AtomicFile.h"
+#include "lintel/core/TextFile.h"
 #include "lintel/exporting/MapExport.h"
 #include "lintel/pages/RunReport.h"
 #include "lintel/pipeline/Configuration.h"
@@ -53,10 +52,10 @@ class LintelVio {
     if (info_) return printInfo();
     checkCommandLine();
     command_ = essentialArguments(argc, argv);
-    if (resume_ && isDone(configuration)) return 0;
     auto recording = openRecording(input_, recording_params_);
     const StopSignals stop;
     const RunFolder folder(output_, overwrite_ || resume_);
+    if (resume_ && isDone(configuration)) return 0;
     makeTracksFolder();
     checkpoint_.emplace(output_, checkpoint_s_);
     costs_.once_ms.emplace_back("start of the program", processTimeMs());
@@ -227,7 +226,7 @@ class LintelVio {
     options.observer = [&](const Frame& frame, const FrameTracks& tracks, const WindowUpdate& update,
                            std::size_t done) {
       series_.add(tracks, update);
-      if (update.hasPose()) checkpoint_->add({update.t_ns, update.T_w_b});
+      saveForNow(update);
       if (draw_tracks_.empty()) return;
       char name[32];
       std::snprintf(name, sizeof name, "%06zu.png", done - 1);
@@ -237,6 +236,16 @@ class LintelVio {
     checkpoint_->flush();
     if (!checkpoint_->fault().empty()) result.remarks.push_back(checkpoint_->fault());
     return result;
+  }
+
+  /// Where it outlasts the program being killed.
+  void saveForNow(const WindowUpdate& update) {
+    for (const auto& [t_ns, T_w_b] : update.replaced) checkpoint_->add({t_ns, T_w_b});
+    if (update.hasPose()) checkpoint_->add({update.t_ns, update.T_w_b});
+    if (update.startWasWrong())
+      checkpoint_->withdrawStart();
+    else if (update.status == EstimatorStatus::kLost)
+      checkpoint_->endStart();
   }
 
   /// What is said of a run that a signal has ended.
@@ -275,10 +284,7 @@ class LintelVio {
       record.truth_fault = error.what();
     }
     const auto picture = std::find(exports_.begin(), exports_.end(), "png");
-    if (picture != exports_.end()) {
-      std::ifstream file(fs::path(output_) / "map.png", std::ios::binary);
-      record.map_picture.assign(std::istreambuf_iterator<char>(file), {});
-    }
+    if (picture != exports_.end()) record.map_picture = bytesOfFile(fs::path(output_) / "map.png");
     return runReport(record, result, series_);
   }
 

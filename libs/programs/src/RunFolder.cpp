@@ -68,13 +68,22 @@ void TrajectoryCheckpoint::flush() {
   last_ = Clock::now();
 }
 
+void TrajectoryCheckpoint::endStart() {
+  flush();
+  if (descriptor_ >= 0) settled_bytes_ = ::lseek(descriptor_, 0, SEEK_END);
+}
+
+void TrajectoryCheckpoint::withdrawStart() {
+  waiting_.clear();
+  if (descriptor_ >= 0 && ::ftruncate(descriptor_, settled_bytes_) != 0)
+    fault_ = path_ + ": " + std::strerror(errno) + "; it holds poses of a start that was wrong";
+}
+
 void TrajectoryCheckpoint::write() {
   const std::string text = trajectoryText(waiting_), header = text.substr(0, text.find('\n') + 1);
   std::string_view rest = text;
-  if (descriptor_ < 0)
-    descriptor_ = ::open(path_.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_APPEND | O_CLOEXEC, 0666);
-  else
-    rest.remove_prefix(header.size());
+  if (descriptor_ < 0) descriptor_ = ::open(path_.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_APPEND | O_CLOEXEC, 0666);
+  if (descriptor_ >= 0 && ::lseek(descriptor_, 0, SEEK_END) > 0) rest.remove_prefix(header.size());
   while (descriptor_ >= 0 && !rest.empty()) {
     const ssize_t written = ::write(descriptor_, rest.data(), rest.size());
     if (written < 0 && errno == EINTR) continue;

@@ -43,6 +43,10 @@ class TrajectoryCheckpoint {
   void add(const OdometryPose& pose);
   /// Writes what is left.
   void flush();
+  /// What follows is of another start.
+  void endStart();
+  /// Takes away what was added since endStart().
+  void withdrawStart();
   /// Removes the file: the results are written.
   void remove();
   /// Why it could not be written; empty if it could. The run goes on, as there may be space at its end.
@@ -59,6 +63,7 @@ class TrajectoryCheckpoint {
   Clock::time_point last_ = Clock::now();
   std::vector<OdometryPose> waiting_;
   int descriptor_ = -1;
+  off_t settled_bytes_ = 0;  ///< of former starts
   std::string fault_;
 };
 

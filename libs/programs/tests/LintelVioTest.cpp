@@ -14,6 +14,7 @@
 #include <thread>
 
 #include "VioTestRuns.h"
+#include "lintel/core/FolderLock.h"
 #include "lintel/evaluation/TrajectoryErrors.h"
 #include "lintel/evaluation/TrajectoryFile.h"
 #include "lintel/mapping/MapFile.h"
@@ -138,6 +139,12 @@ TEST_F(LintelVioTest, ResumesWhatBrokeOffAndLeavesWhatIsDone) {
 
   fs::create_directories(out("killed"));
   fs::copy_file(out("reference") + "/trajectory.tum", out("killed") + "/trajectory.partial.tum");
+  {
+    const FolderLock other(out("killed"));  // a run that goes on has such a file too
+    again = run(recording(), "killed", {"--threads", "1", "--resume"});
+    EXPECT_EQ(again.exit_code, 1);
+    expectOneLine(again, "another run is writing to it");
+  }
   again = run(recording(), "killed", {"--threads", "1", "--resume"});
   EXPECT_EQ(again.exit_code, 0);
   expectOneLine(again, "the earlier run broke off (it was killed)");

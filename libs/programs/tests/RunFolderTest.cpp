@@ -79,6 +79,26 @@ TEST(TrajectoryCheckpoint, AppendsThePosesSoFar) {
   EXPECT_EQ(work.entries(), 0);
 }
 
+TEST(TrajectoryCheckpoint, AStartThatWasWrongIsTakenAway) {
+  const test::TempFolder work;
+  TrajectoryCheckpoint checkpoint(work.path().string(), 1e9);
+  const std::string path = work / "trajectory.partial.tum";
+  checkpoint.add(pose(1000000000));
+  checkpoint.flush();
+  checkpoint.withdrawStart();
+  EXPECT_EQ(test::bytesOf(path), "");
+  checkpoint.add(pose(2000000000));
+  checkpoint.endStart();
+  checkpoint.add(pose(3000000000));
+  checkpoint.flush();
+  checkpoint.add(pose(4000000000));
+  checkpoint.withdrawStart();
+  EXPECT_EQ(test::bytesOf(path), trajectoryText({pose(2000000000)}));
+  checkpoint.add(pose(5000000000));
+  checkpoint.flush();
+  EXPECT_EQ(test::bytesOf(path), trajectoryText({pose(2000000000), pose(5000000000)}));
+}
+
 TEST(TrajectoryCheckpoint, WritesByItselfOnceTheTimeIsUp) {
   const test::TempFolder work;
   TrajectoryCheckpoint checkpoint(work.path().string(), 1e-9);

@@ -14,4 +14,7 @@ constexpr std::size_t kLongestText = std::size_t{16} << 20;
 std::string textOfFile(const std::string& path, void (*throw_error)(const std::string&),
                        std::size_t most = kLongestText);
 
+/// All bytes of a file; none if it cannot be read.
+std::string bytesOfFile(const std::string& path);
+
 }  // namespace lintel

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "lintel/estimator/SlidingWindow.h"
@@ -50,6 +51,14 @@ enum class EstimatorStatus {
   kLost,          ///< failure: the window was given up at this frame, initialisation starts again
 };
 
+/// Why the window was given up.
+enum class Failure {
+  kNone,
+  kInterrupted,  ///< no data to go on with; what was estimated before holds
+  kWrongStart,  ///< the estimate contradicts itself soon after the start: nothing since then holds, none is handed over
+  kDiverged,    ///< the same later on: what was estimated before is handed over, but it was going wrong
+};
+
 /// What one frame changed.
 struct WindowUpdate {
   std::int64_t t_ns = 0;
@@ -59,6 +68,9 @@ struct WindowUpdate {
   Eigen::Vector3d v_w_b = Eigen::Vector3d::Zero();
   ImuBias bias;
   std::optional<ImuBias> bias_sigma;  ///< standard deviations, about once a second
+  Failure failure = Failure::kNone;   ///< with kLost
+  /// With the first pose of a start that replaces a wrong one: (t_ns, T_w_b) of frames before, since the wrong start.
+  std::vector<std::pair<std::int64_t, Pose>> replaced;
   std::vector<RetiredKeyframe> keyframes;
   std::vector<RetiredPoint> points;
   std::vector<RetiredLine> lines;
@@ -69,6 +81,7 @@ struct WindowUpdate {
   bool keyframe = false, at_rest = false;
   bool blind = false;  ///< the images show too little: the pose is the IMU's alone
 
+  bool startWasWrong() const { return failure == Failure::kWrongStart; }
   bool hasPose() const { return status == EstimatorStatus::kTracking || status == EstimatorStatus::kPropagated; }
 };
 

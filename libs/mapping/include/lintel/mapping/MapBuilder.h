@@ -16,7 +16,7 @@ class MapBuilder {
   /// Throws std::invalid_argument, naming the parameter, when one is out of range.
   MapBuilder(const Rig& rig, const MapParams& params);
 
-  /// Updates in the order of time.
+  /// Updates in the order of time. What a start has given that proved wrong is taken away again.
   void add(const WindowUpdate& update);
 
   /// Calibration that the map's poses belong to.
@@ -29,8 +29,16 @@ class MapBuilder {
   LineMap build() const;
 
  private:
+  /// How much of the material is of former starts.
+  struct Extent {
+    std::size_t keyframes = 0, points = 0, lines = 0, poses = 0;
+  };
+
+  void withdrawStart();
+
   MapParams params_;
   MapMaterial material_;
+  Extent settled_;
 };
 
 /// Estimates all points and lines from all their views, with the poses as they are, and merges estimates of the same

@@ -33,7 +33,8 @@ struct Stretch {
 struct OdometryStatistics {
   std::size_t frames = 0, frames_with_pose = 0, window_frames = 0, keyframes = 0, resets = 0;
   std::int64_t first_frame_ns = 0, last_frame_ns = 0;
-  double first_pose_s = -1;  ///< after the first frame
+  double first_pose_s = -1;   ///< of the trajectory, after the first frame
+  double first_start_s = -1;  ///< the same, of a start that proved wrong and was withdrawn, too
   double mean_points_used = 0, mean_lines_tracked = 0, mean_lines_placed = 0, mean_lines_used = 0,
          mean_lines_degenerate = 0, mean_lines_constrained = 0;
   /// degenerate lines by their reason (LineVerdict)
