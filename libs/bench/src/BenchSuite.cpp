@@ -203,13 +203,21 @@ class SuiteReader {
   }
 
   void addPublished(const YAML::Node& system, const YAML::Node& figures, BenchSuite& suite) const {
-    if (!figures.IsMap()) fail(system, "published figures need 'recording: [RMSE, maximum]'");
-    suite.published.push_back({as<std::string>(system), {}});
+    constexpr char kForm[] = "published figures need 'recording: RMSE' or 'recording: [RMSE, maximum]', in metres";
+    if (!figures.IsMap()) fail(system, kForm);
+    PublishedSystem published{as<std::string>(system), {}, {}};
     for (const auto& figure : figures) {
-      const auto values = asList<double>(figure.second);
-      if (values.size() != 2) fail(figure.first, "published figures are [RMSE, maximum] in metres");
-      suite.published.back().second[as<std::string>(figure.first)] = {values[0], values[1]};
+      const auto recording = as<std::string>(figure.first);
+      if (recording == "source") {
+        published.source = as<std::string>(figure.second);
+        continue;
+      }
+      const auto values =
+          figure.second.IsScalar() ? std::vector<double>{as<double>(figure.second)} : asList<double>(figure.second);
+      if (values.empty() || values.size() > 2) fail(figure.first, kForm);
+      published.errors[recording] = {values[0], values.size() == 2 ? std::optional(values[1]) : std::nullopt};
     }
+    suite.published.push_back(published);
   }
 
   std::string file_, folder_, config_;

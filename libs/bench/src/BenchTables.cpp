@@ -57,6 +57,21 @@ void markBest(std::vector<Cell>& row, const BenchSuite& suite, const BenchResult
 
 std::string rmseAndMax(double rmse_m, double max_m) { return fixedText(rmse_m, 4) + "/" + fixedText(max_m, 4); }
 
+Cell publishedCell(const PublishedSystem& system, const std::string& recording) {
+  const auto found = system.errors.find(recording);
+  if (found == system.errors.end()) return Cell("-");
+  const auto& [rmse_m, max_m] = found->second;
+  return Cell(fixedText(rmse_m, 3) + (max_m ? "/" + fixedText(*max_m, 3) : ""));
+}
+
+Cell publishedMean(const PublishedSystem& system) {
+  double sum = 0;
+  for (const auto& [recording, errors] : system.errors) sum += errors.rmse_m;
+  if (system.errors.empty()) return Cell("-");
+  return Cell(fixedText(sum / static_cast<double>(system.errors.size()), 3) + " of " +
+              std::to_string(system.errors.size()));
+}
+
 /// The paper's table: RMSE/maximum, a row a recording, beside it what others have published.
 Table accuracyTable(const BenchSuite& suite, const BenchResults& results, bool refined) {
   const auto figure = [refined](const BenchCell& c, const std::string& path) {
@@ -73,17 +88,16 @@ Table accuracyTable(const BenchSuite& suite, const BenchResults& results, bool r
               {},
               {"* best of the row. (N %): covers only so much of the recording, not comparable. (N of M): so many runs "
                "succeeded, medians of those."}};
-  for (const auto& system : suite.published) table.columns.push_back(system.first + " (published)");
+  for (const PublishedSystem& system : suite.published) {
+    table.columns.push_back(system.name + " (published)");
+    if (!system.source.empty()) table.notes.push_back(system.name + ": " + system.source + ".");
+  }
   for (std::size_t r = 0; r < suite.recordings.size(); ++r) {
     std::vector<Cell> row{suite.recordings[r].name};
     for (std::size_t c = 0; c < suite.configurations.size(); ++c) row.push_back(cellOf(results.cell(r, c), text));
     markBest(row, suite, results, r, rmse);
-    for (const auto& [system, figures] : suite.published) {
-      const auto found = figures.find(suite.recordings[r].name);
-      row.push_back(found == figures.end()
-                        ? Cell("-")
-                        : Cell(fixedText(found->second.rmse_m, 3) + "/" + fixedText(found->second.max_m, 3)));
-    }
+    for (const PublishedSystem& system : suite.published)
+      row.push_back(publishedCell(system, suite.recordings[r].name));
     table.rows.push_back(row);
   }
   std::vector<Cell> mean{"mean of RMSE"};
@@ -98,12 +112,7 @@ Table accuracyTable(const BenchSuite& suite, const BenchResults& results, bool r
     }
     mean.push_back(n == 0 ? Cell("-") : Cell(fixedText(sum / static_cast<double>(n), 4) + " of " + std::to_string(n)));
   }
-  for (const auto& system : suite.published) {
-    double sum = 0;
-    for (const auto& figure_of : system.second) sum += figure_of.second.rmse_m;
-    mean.push_back(fixedText(sum / static_cast<double>(system.second.size()), 3) + " of " +
-                   std::to_string(system.second.size()));
-  }
+  for (const PublishedSystem& system : suite.published) mean.push_back(publishedMean(system));
   table.rows.push_back(mean);
   return table;
 }

@@ -24,6 +24,7 @@ std::vector<double> usualInverseDistances(const MapMaterial& material) {
         inverse[k->second].push_back(
             1 / std::max(1e-3, (point.p_w - (material.keyframes[k->second].T_w_b * material.rig.T_b_c).p).norm()));
   std::vector<double> usual;
+  usual.reserve(inverse.size());
   for (std::vector<double>& values : inverse) usual.push_back(values.empty() ? 0 : upperMedian(values));
   return usual;
 }

@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <map>
+#include <optional>
 #include <stdexcept>
 #include <string>
 #include <utility>
@@ -34,9 +35,15 @@ struct BenchConfiguration {
   std::vector<std::string> settings;  ///< for lintel-vio's --set
 };
 
-/// RMSE and maximum [m] as published.
+/// RMSE and, where it was given, maximum [m] as published.
 struct PublishedErrors {
-  double rmse_m = 0, max_m = 0;
+  double rmse_m = 0;
+  std::optional<double> max_m;
+};
+
+struct PublishedSystem {
+  std::string name, source;                       ///< where the figures were published; empty: the suite does not say
+  std::map<std::string, PublishedErrors> errors;  ///< by recording
 };
 
 /// What lintel-bench runs.
@@ -45,8 +52,7 @@ struct BenchSuite {
   std::vector<BenchRecording> recordings;
   std::vector<BenchConfiguration> configurations;
   std::vector<double> starts_s{0};  ///< every run is repeated from these times after the recording's start
-  /// Other systems by name, then by recording.
-  std::vector<std::pair<std::string, std::map<std::string, PublishedErrors>>> published;
+  std::vector<PublishedSystem> published;
   std::vector<std::string> notes;  ///< put below the tables
 };
 
