@@ -7,26 +7,16 @@
 #include <cmath>
 #include <cstdint>
 
+#include "lintel/core/RandomSequence.h"
 #include "lintel/geometry/Rotation.h"
 
 namespace lintel {
 
 namespace {
 
+constexpr std::uint64_t kSeed = 20261123;  // of the samples
 using Vector6d = Eigen::Matrix<double, 6, 1>;
 using Matrix6d = Eigen::Matrix<double, 6, 6>;
-
-/// A fixed, platform-independent sequence: std distributions differ between libraries.
-class Sequence {
- public:
-  std::size_t below(std::size_t n) {
-    state_ = state_ * 6364136223846793005ULL + 1442695040888963407ULL;
-    return static_cast<std::size_t>((state_ >> 33) % n);
-  }
-
- private:
-  std::uint64_t state_ = 20261123;
-};
 
 /// Poses from which two points are seen in two directions; `bearing` in a frame whose z axis is vertical, turned from
 /// the world by the unknown yaw: p_w = c + distance Rz(yaw) bearing. With q = Rz(-yaw) p_w and c' = Rz(-yaw) c, every
@@ -82,7 +72,7 @@ Pose bestOfPairs(const std::vector<Sighting>& sightings, const Eigen::Quaternion
   Pose best;
   std::size_t most = 0;
   const double cosine = std::cos(params.coarse_rad);
-  Sequence sequence;
+  RandomSequence sequence(kSeed);
   for (int h = 0; h < params.hypotheses; ++h) {
     const Sighting &a = sightings[sequence.below(sightings.size())], &b = sightings[sequence.below(sightings.size())];
     if ((a.p_w - b.p_w).squaredNorm() < 1e-6) continue;

@@ -7,11 +7,13 @@
 #include <cmath>
 #include <cstdint>
 
+#include "lintel/core/RandomSequence.h"
 #include "lintel/geometry/Rotation.h"
 
 namespace lintel {
 namespace {
 
+constexpr std::uint64_t kSeed = 20210530;  // of the samples
 using Vector5d = Eigen::Matrix<double, 5, 1>;
 using Matrix5d = Eigen::Matrix<double, 5, 5>;
 
@@ -19,18 +21,6 @@ constexpr std::size_t kMinPairs = 8;     // five unknowns, and redundancy to det
 constexpr double kConverged_rad = 1e-5;  // less than a hundredth of a pixel
 constexpr double kRobustScale = 2;       // standard deviations from which on a point loses weight (Cauchy)
 constexpr double kDirectionPrior = 1;    // damping of the direction [1/rad^2]: far below what a translation gives
-
-/// A fixed, platform-independent sequence: std distributions differ between libraries.
-class Sequence {
- public:
-  std::size_t below(std::size_t n) {
-    state_ = state_ * 6364136223846793005ULL + 1442695040888963407ULL;
-    return static_cast<std::size_t>((state_ >> 33) % n);
-  }
-
- private:
-  std::uint64_t state_ = 20210530;
-};
 
 struct Rays {
   Eigen::Vector3d f0, f1;  ///< z = 1 or unit length; f0 turned into frame 1 by the predicted rotation
@@ -72,7 +62,7 @@ double truncatedCost(const std::vector<Rays>& rays, const Eigen::Vector3d& t, do
 Eigen::Vector3d bestDirection(const std::vector<Rays>& rays, double threshold, const TwoViewParams& params) {
   Eigen::Vector3d best = Eigen::Vector3d::UnitX();
   double best_cost = truncatedCost(rays, best, threshold, params.wide);
-  Sequence sequence;
+  RandomSequence sequence(kSeed);
   for (int h = 0; h < params.hypotheses; ++h) {
     const Rays& a = rays[sequence.below(rays.size())];
     const Rays& b = rays[sequence.below(rays.size())];
