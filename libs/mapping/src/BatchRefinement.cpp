@@ -44,9 +44,9 @@ bool isHeldOut(const PointRecord& point, double share) {
   return share > 0 && point.id % std::max<std::uint64_t>(2, period) == 1;
 }
 
-/// Median over the held-out points of their mean error, estimated with the given cameras.
-double heldOutError(const MapParams& map, const MapMaterial& cameras_of, std::vector<PointRecord> points,
-                    int min_views) {
+/// Mean error of each held-out point, estimated with the given cameras.
+std::vector<double> heldOutErrors(const MapParams& map, const MapMaterial& cameras_of, std::vector<PointRecord> points,
+                                  int min_views) {
   const KeyframeCameras cameras(cameras_of);
   PointFitParams fit;
   fit.max_error_px = 1e3;  // all views count: marking views as outliers must not lower the error
@@ -57,7 +57,34 @@ double heldOutError(const MapParams& map, const MapMaterial& cameras_of, std::ve
     point.known = false;
     errors.push_back(fitPoint(cameras, fit, point) ? point.error_px : fit.max_error_px);
   }
-  return errors.empty() ? 0 : upperMedian(errors);
+  return errors;
+}
+
+/// How the held-out points fit before and after: medians, and by how many of its own standard deviations the mean
+/// logarithm of the errors has grown.
+void compareHeldOut(const std::vector<double>& before_px, const std::vector<double>& after_px,
+                    RefinementReport& report) {
+  constexpr double kFloor_px = 0.1;  // below it a ratio of errors says nothing
+  const std::size_t n = before_px.size();
+  if (n == 0) return;
+  const auto median = [](std::vector<double> errors) { return upperMedian(errors); };
+  report.held_out = n;
+  report.held_out_before_px = median(before_px);
+  report.held_out_after_px = median(after_px);
+  double sum = 0, sum_of_squares = 0;
+  for (std::size_t i = 0; i < n; ++i) {
+    const double growth = std::log((after_px[i] + kFloor_px) / (before_px[i] + kFloor_px));
+    sum += growth;
+    sum_of_squares += growth * growth;
+  }
+  const auto count = static_cast<double>(n);
+  const double mean = sum / count, variance = (sum_of_squares - count * mean * mean) / std::max(1.0, count - 1);
+  report.held_out_growth = n < 3 ? 0 : mean / std::sqrt(std::max(variance, 1e-12) / count);
+}
+
+/// Whether the held-out points fit worse by more than chance explains (one adjustment of forty that changes nothing).
+bool fitsWorse(const RefinementReport& report) {
+  return report.held_out_after_px > 1.02 * report.held_out_before_px + 0.01 && report.held_out_growth > 2;
 }
 
 /// How far keyframes moved; every run about its own first keyframe, which is held.
@@ -105,7 +132,7 @@ std::string objection(const MapMaterial& after, const EstimatorParams& estimator
                       const RefinementReport& report, double may_move_m) {
   if (!isFinite(after)) return "the adjustment diverged";
   if (!(report.cost_after <= report.cost_before)) return "the adjustment did not lower its cost";
-  if (report.held_out_after_px > 1.02 * report.held_out_before_px + 0.01)
+  if (fitsWorse(report))
     return text("points left out of it fit worse (%.3f px, before %.3f px)", report.held_out_after_px,
                 report.held_out_before_px);
   if (report.imu_after > std::max(params.max_imu_error, report.imu_before))
@@ -222,8 +249,8 @@ RefinementReport BatchRefinement::adjust(MapMaterial& material, const Refinement
   }
   double travelled_m = 0;
   measureChange(before, material, report, travelled_m);
-  report.held_out_before_px = heldOutError(map_, before, held_out, params_.min_views);
-  report.held_out_after_px = heldOutError(map_, material, held_out, params_.min_views);
+  compareHeldOut(heldOutErrors(map_, before, held_out, params_.min_views),
+                 heldOutErrors(map_, material, held_out, params_.min_views), report);
   const double may_move_m = params_.max_moved_m + params_.max_moved_share * travelled_m + blindDrift(before.keyframes);
   const std::string reason = objection(material, estimator_, params_, report, may_move_m);
   report.accepted = reason.empty();

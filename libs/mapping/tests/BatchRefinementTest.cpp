@@ -114,6 +114,15 @@ class BatchRefinementTest : public testing::Test {
     return joins;
   }
 
+  /// All points but those held out, every twentieth, slide by three pixels from keyframe to keyframe.
+  static void slideAllButHeldOut(RefinementParams& params, MapMaterial& material) {
+    params.lines = false;
+    params.max_imu_error = params.max_moved_m = 1000;
+    for (PointRecord& point : material.points)
+      if (point.id % 20 != 1)
+        for (PointView& view : point.views) view.px.x() += 0.6 * static_cast<double>(view.keyframe);
+  }
+
   static SimulatedTracks flight_;
   const Rig rig_ = eurocRig();
   EstimatorParams estimator_;
@@ -133,6 +142,30 @@ TEST_F(BatchRefinementTest, TakesTheDriftAway) {
   EXPECT_LT(report.imu_after, 1.5);
   EXPECT_EQ(material_.trajectory.size(), flight_.frames.size()) << "every frame has a refined pose";
   EXPECT_NE(report.verdict.find("refined"), std::string::npos);
+}
+
+TEST_F(BatchRefinementTest, IsRefusedWherePointsLeftOutFitWorse) {
+  slideAllButHeldOut(params_, material_);
+  const double before = error(material_);
+  const RefinementReport report = refine(material_);
+  EXPECT_GE(report.held_out, 5u);
+  EXPECT_GT(report.held_out_growth, 2);
+  EXPECT_FALSE(report.accepted);
+  EXPECT_NE(report.verdict.find("points left out of it fit worse"), std::string::npos) << report.verdict;
+  EXPECT_EQ(error(material_), before) << "the poses stay";
+}
+
+TEST_F(BatchRefinementTest, TwoPointsLeftOutDoNotDecide) {
+  int held_out = 0;
+  for (PointRecord& point : material_.points)
+    if (point.id % 20 == 1 && point.views.size() > 3 && ++held_out > 2) point.id += 1'000'001;  // held out no more
+  std::sort(material_.points.begin(), material_.points.end(),
+            [](const PointRecord& a, const PointRecord& b) { return a.id < b.id; });
+  slideAllButHeldOut(params_, material_);
+  const RefinementReport report = refine(material_);
+  EXPECT_EQ(report.held_out, 2u);
+  EXPECT_GT(report.held_out_after_px, 1.02 * report.held_out_before_px + 0.01);
+  EXPECT_TRUE(report.accepted) << report.verdict;
 }
 
 TEST_F(BatchRefinementTest, ACancelledRefinementLeavesPosesAndEstimatesLandmarks) {

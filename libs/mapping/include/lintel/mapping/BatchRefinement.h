@@ -76,8 +76,10 @@ struct RefinementReport {
   std::size_t residuals = 0, points = 0, lines = 0;
   double cost_before = 0, cost_after = 0;                ///< robust, of the last adjustment's residuals
   double held_out_before_px = 0, held_out_after_px = 0;  ///< median error of points left out of it
-  double imu_before = 0, imu_after = 0;                  ///< RMS, standard deviations
-  double moved_m = 0, turned_rad = 0;                    ///< most, of a keyframe
+  std::size_t held_out = 0;                              ///< how many these are
+  double held_out_growth = 0;  ///< of their errors, in standard deviations of its mean; 0 with fewer than three
+  double imu_before = 0, imu_after = 0;  ///< RMS, standard deviations
+  double moved_m = 0, turned_rad = 0;    ///< most, of a keyframe
 };
 
 /// Called at every iteration with the share that is done, in [0, 1]. Its result below 1 says whether to go on: after
