@@ -88,7 +88,8 @@ void setKey(const std::string& argument, FrontEndParams& params, RecordingParams
 int run(int argc, char** argv) {
   if (argc < 2)
     throw std::runtime_error(
-        "usage: tracking_figures RECORDING [mode=flow|descriptor] [lines=0] [to_s=S] [switches=1]");
+        "usage: tracking_figures RECORDING [mode=flow|four_steps|descriptor] [detector=edge_drawing|lsd] [lines=0] "
+        "[to_s=S] [switches=1]");
   const std::string path = argv[1];
   FrontEndParams params;
   RecordingParams recording_params;

@@ -131,7 +131,7 @@ TEST_F(ConfigurationTest, AValueOfTheWrongTypeNamesFileLineAndWhatItMustBe) {
 TEST_F(ConfigurationTest, AValueBeyondItsLimitsNamesFileLineAndLimits) {
   EXPECT_EQ(complaintOf("estimator:\n  keyframes: 2\n"), file_ + ":2: estimator.keyframes = 2, must be from 4 to 100");
   EXPECT_EQ(complaintOf("tracking: {lines: {mode: magic}}\n"),
-            file_ + ":1: tracking.lines.mode = magic, must be one of flow, descriptor");
+            file_ + ":1: tracking.lines.mode = magic, must be one of flow, four_steps, descriptor");
   EXPECT_EQ(setComplaintOf("map.coverage=1.5"), "--set map.coverage=1.5:1: map.coverage = 1.5, must be from 0 to 1");
 }
 

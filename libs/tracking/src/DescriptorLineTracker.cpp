@@ -2,107 +2,18 @@
 #include "DescriptorLineTracker.h"
 
 #include <algorithm>
-#include <cmath>
-#include <opencv2/line_descriptor.hpp>
 
 namespace lintel {
-namespace {
-
-constexpr double kGateAngle_rad = 0.2;     ///< 11 degrees: what perspective turns in a frame
-constexpr double kGateDistance_px = 60;    ///< between their lines, at the reference focal length: parallax of a frame
-constexpr double kMinOverlap = 0.3;        ///< of the shorter one
-constexpr double kDetectorSigma_px = 1.0;  ///< of a detection at half resolution
-
-cv::line_descriptor::KeyLine keyLine(const LineCamera& camera, const ImageLine& line, const cv::Size& size, int index) {
-  const Eigen::Vector2d a = camera.toImage(line.start, line.axis), b = camera.toImage(line.end, line.axis);
-  cv::line_descriptor::KeyLine key;
-  key.startPointX = key.sPointInOctaveX = static_cast<float>(a.x());
-  key.startPointY = key.sPointInOctaveY = static_cast<float>(a.y());
-  key.endPointX = key.ePointInOctaveX = static_cast<float>(b.x());
-  key.endPointY = key.ePointInOctaveY = static_cast<float>(b.y());
-  key.lineLength = static_cast<float>((b - a).norm());
-  key.angle = static_cast<float>(std::atan2(b.y() - a.y(), b.x() - a.x()));
-  key.octave = 0;
-  key.class_id = index;  // the descriptor's row; -1 would crash OpenCV
-  key.numOfPixels = std::max(static_cast<int>(key.lineLength), 1);
-  key.pt = {0.5f * (key.startPointX + key.endPointX), 0.5f * (key.startPointY + key.endPointY)};
-  key.response = key.lineLength / static_cast<float>(std::max(size.width, size.height));
-  key.size = static_cast<float>(std::abs((b.x() - a.x()) * (b.y() - a.y())));
-  return key;
-}
-
-struct Match {
-  std::size_t from, to;
-  int distance;
-};
-
-}  // namespace
-
-struct LineMatcher::Engine {
-  cv::Ptr<cv::line_descriptor::BinaryDescriptor> descriptor =
-      cv::line_descriptor::BinaryDescriptor::createBinaryDescriptor();
-};
-
-LineMatcher::LineMatcher(const LineCamera& camera, const LineTrackerParams& params)
-    : camera_(camera), params_(params), engine_(std::make_unique<Engine>()) {}
-
-LineMatcher::~LineMatcher() = default;
-
-cv::Mat LineMatcher::describe(const cv::Mat& image, const std::vector<ImageLine>& lines) const {
-  cv::Mat descriptors;
-  if (lines.empty()) return descriptors;
-  std::vector<cv::line_descriptor::KeyLine> keys;
-  for (std::size_t i = 0; i < lines.size(); ++i)
-    keys.push_back(keyLine(camera_, lines[i], image.size(), static_cast<int>(i)));
-  engine_->descriptor->compute(image, keys, descriptors);
-  return descriptors;
-}
-
-std::vector<std::optional<std::size_t>> LineMatcher::match(const std::vector<ImageLine>& expected,
-                                                           const cv::Mat& from_descriptors,
-                                                           const std::vector<ImageLine>& to,
-                                                           const cv::Mat& to_descriptors) const {
-  std::vector<Match> pairs;
-  for (std::size_t f = 0; f < expected.size(); ++f)
-    for (std::size_t t = 0; t < to.size(); ++t) {
-      const LineRelation relation = relate(expected[f], camera_.seenFrom(expected[f].axis, to[t]));
-      if (relation.angle_rad > kGateAngle_rad || relation.distance_px > camera_.scaled(kGateDistance_px) ||
-          relation.overlap_px < kMinOverlap * std::min(expected[f].length(), to[t].length()))
-        continue;
-      const int distance = static_cast<int>(cv::norm(from_descriptors.row(static_cast<int>(f)),
-                                                     to_descriptors.row(static_cast<int>(t)), cv::NORM_HAMMING));
-      if (distance <= params_.descriptor_distance) pairs.push_back({f, t, distance});
-    }
-  std::stable_sort(pairs.begin(), pairs.end(), [](const Match& a, const Match& b) { return a.distance < b.distance; });
-  std::vector<std::optional<std::size_t>> matches(to.size());
-  std::vector<char> used(expected.size(), 0);
-  for (const Match& pair : pairs) {
-    if (used[pair.from] || matches[pair.to]) continue;
-    used[pair.from] = 1;
-    matches[pair.to] = pair.from;
-  }
-  return matches;
-}
 
 DescriptorLineTracker::DescriptorLineTracker(const Rig& rig, const LineTrackerParams& params)
-    : params_(params), camera_(rig.camera, ImageMask(rig)), detector_(camera_, params), matcher_(camera_, params) {}
-
-std::vector<ImageLine> DescriptorLineTracker::detect(const ImagePyramid& pyramid, LineStatistics& statistics) {
-  std::vector<ImageLine> detected;
-  for (const ImageLine& line : detector_.detect(pyramid)) {
-    const auto clipped = camera_.clip(line, params_.border_px);
-    if (clipped && clipped->length() >= params_.min_length_px) detected.push_back(*clipped);
-    if (static_cast<int>(detected.size()) == params_.max_lines) break;
-  }
-  statistics.detections += static_cast<std::int64_t>(detected.size());
-  return detected;
-}
+    : camera_(rig.camera, ImageMask(rig)), detector_(camera_, params), matcher_(camera_, params) {}
 
 void DescriptorLineTracker::process(const ImagePyramid& pyramid, const GyroPrediction& gyro, const PointMotion&,
                                     FrontEndStatistics& statistics) {
   observations_.clear();
   StageTimer timer(statistics, "lines_descriptor");
-  const std::vector<ImageLine> detected = detect(pyramid, statistics.lines);
+  const std::vector<ImageLine> detected = detector_.detectLong(pyramid);
+  statistics.lines.detections += static_cast<std::int64_t>(detected.size());
   const cv::Mat descriptors = matcher_.describe(pyramid.image(), detected);
   std::vector<ImageLine> expected;
   for (const Track& track : tracks_) expected.push_back(camera_.turned(track.line, gyro.R_c1_c0()));
@@ -123,7 +34,8 @@ void DescriptorLineTracker::process(const ImagePyramid& pyramid, const GyroPredi
       ++statistics.lines.created;
     }
     track.line = detected[i];
-    observations_.push_back(lineObservation(camera_, track.id, track.line, kDetectorSigma_px, track.length, true));
+    observations_.push_back(
+        lineObservation(camera_, track.id, track.line, LineDetector::kSigma_px, track.length, true));
     tracks.push_back(track);
   }
   for (std::size_t i = 0; i < tracks_.size(); ++i)

@@ -16,6 +16,13 @@ constexpr double kPiece = 0.3;            ///< of a new line's least length: sho
 constexpr int kAnchorThreshold = 4;       ///< of edge_drawing: by how much an anchor's gradient exceeds its neighbours'
 constexpr int kLeastPiece_px = 8;         ///< of edge_drawing, at half resolution: less is noise
 
+// Of lsd [Gioi2012], whose parameters OpenCV leaves at a scale of 0.8 (two and a half times slower) with a second
+// pass.
+constexpr double kLsdScale = 0.5;       ///< of the image, smoothed before by a Gaussian of kLsdSigma / kLsdScale px
+constexpr double kLsdSigma = 0.6;       ///< [Gioi2012]
+constexpr double kLsdQuantisation = 2;  ///< error of a gradient, in grey levels: 2 for 256 of them [Gioi2012]
+constexpr double kLsdAngle_deg = 22.5;  ///< of gradients of one segment [Gioi2012]
+
 /// Joins `other` to `line` when both are pieces of one edge.
 bool join(const LineCamera& camera, ImageLine& line, const ImageLine& elsewhere, double gap_px) {
   if (!camera.mayBeNear(line, elsewhere, kJoinDistance_px)) return false;
@@ -56,7 +63,9 @@ struct LineDetector::Engine {
 LineDetector::LineDetector(const LineCamera& camera, const LineTrackerParams& params)
     : camera_(camera), params_(params), refiner_(camera), engine_(std::make_unique<Engine>()) {
   if (params_.detector == "lsd") {
-    engine_->lsd = cv::createLineSegmentDetector(cv::LSD_REFINE_NONE, 1.0);
+    // Without the refinement that splits segments which are not dense: pieces would be joined again.
+    engine_->lsd =
+        cv::createLineSegmentDetector(cv::LSD_REFINE_NONE, kLsdScale, kLsdSigma, kLsdQuantisation, kLsdAngle_deg);
   } else {
     engine_->edge_drawing = cv::ximgproc::createEdgeDrawing();
     cv::ximgproc::EdgeDrawing::Params& p = engine_->edge_drawing->params;
@@ -71,16 +80,16 @@ LineDetector::LineDetector(const LineCamera& camera, const LineTrackerParams& pa
 LineDetector::~LineDetector() = default;
 
 std::vector<cv::Vec4f> LineDetector::detectRaw(const ImagePyramid& pyramid) {
-  // The second level of the pyramid is already smoothed and costs a quarter.
-  const int level = std::min(1, pyramid.levels() - 1);
-  const cv::Mat image = pyramid.image(level).clone();  // the pyramid's levels are views with a border around them
   std::vector<cv::Vec4f> segments;
   if (engine_->lsd) {
-    engine_->lsd->detect(image, segments);
-  } else {
-    engine_->edge_drawing->detectEdges(image);
-    engine_->edge_drawing->detectLines(segments);
+    engine_->lsd->detect(pyramid.image().clone(),
+                         segments);  // the pyramid's levels are views with a border around them
+    return segments;
   }
+  // The second level of the pyramid is already smoothed and costs a quarter.
+  const int level = std::min(1, pyramid.levels() - 1);
+  engine_->edge_drawing->detectEdges(pyramid.image(level).clone());
+  engine_->edge_drawing->detectLines(segments);
   for (cv::Vec4f& segment : segments) segment *= static_cast<float>(1 << level);
   return segments;
 }
@@ -93,6 +102,16 @@ std::vector<ImageLine> LineDetector::detect(const ImagePyramid& pyramid) {
     if (const auto oriented = refiner_.orient(pyramid.image(), line)) pieces.push_back(*oriented);
   }
   return joined(camera_, std::move(pieces), camera_.scaled(kJoinGap_px));
+}
+
+std::vector<ImageLine> LineDetector::detectLong(const ImagePyramid& pyramid) {
+  std::vector<ImageLine> lines;
+  for (const ImageLine& line : detect(pyramid)) {
+    const auto clipped = camera_.clip(line, params_.border_px);
+    if (clipped && clipped->length() >= params_.min_length_px) lines.push_back(*clipped);
+    if (static_cast<int>(lines.size()) == params_.max_lines) break;
+  }
+  return lines;
 }
 
 }  // namespace lintel

@@ -23,6 +23,13 @@ class LineDetector {
   /// end joined; longer ones first.
   std::vector<ImageLine> detect(const ImagePyramid& pyramid);
 
+  /// Those of them that are long enough in the used part of the image for a new line, as many as may be held: for
+  /// trackers that do not lay lines on the edge.
+  std::vector<ImageLine> detectLong(const ImagePyramid& pyramid);
+
+  /// Standard deviation of a detection's ends across the line: half resolution.
+  static constexpr double kSigma_px = 1.0;
+
  private:
   /// What OpenCV's detector finds, image pixels of full resolution (x0 y0 x1 y1).
   std::vector<cv::Vec4f> detectRaw(const ImagePyramid& pyramid);

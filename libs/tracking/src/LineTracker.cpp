@@ -3,6 +3,7 @@
 
 #include "DescriptorLineTracker.h"
 #include "FlowLineTracker.h"
+#include "FourStepLineTracker.h"
 
 namespace lintel {
 
@@ -22,6 +23,7 @@ LineObservation lineObservation(const LineCamera& camera, TrackId id, const Imag
 
 std::unique_ptr<LineTracker> makeLineTracker(const Rig& rig, const LineTrackerParams& params) {
   if (params.mode == "descriptor") return std::make_unique<DescriptorLineTracker>(rig, params);
+  if (params.mode == "four_steps") return std::make_unique<FourStepLineTracker>(rig, params);
   return std::make_unique<FlowLineTracker>(rig, params);
 }
 

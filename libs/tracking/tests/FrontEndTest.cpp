@@ -14,24 +14,9 @@
 namespace lintel {
 namespace {
 
+using testing::kStep_ns;
 using testing::Strip;
-constexpr std::int64_t kStep_ns = 50'000'000;
-
-/// Turns the camera at a constant rate (camera frame) before a scene and tracks it.
-std::vector<FrameTracks> trackTurning(const std::vector<testing::Scene>& scenes, const FrontEndParams& params,
-                                      const Eigen::Vector3d& rate_c, const Eigen::Vector3d& bias_b = {0, 0, 0}) {
-  const Rig rig = testing::testRig();
-  FrontEnd front_end(rig, params);
-  std::vector<FrameTracks> result;
-  for (std::size_t i = 0; i < scenes.size(); ++i) {
-    const auto t_ns = static_cast<std::int64_t>(i) * kStep_ns;
-    const Eigen::Quaterniond R_w_c = expRotation(rate_c * 0.05 * static_cast<double>(i));
-    const Frame frame = testing::renderScene(rig, scenes[i], t_ns, R_w_c.conjugate());
-    result.push_back(
-        front_end.process(frame, testing::constantRate(t_ns - kStep_ns, t_ns, rig.T_b_c.q * rate_c + bias_b)));
-  }
-  return result;
-}
+using testing::trackTurning;
 
 FrontEndParams pointsOnly() {
   FrontEndParams params;

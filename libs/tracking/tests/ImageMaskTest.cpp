@@ -10,7 +10,7 @@
 namespace lintel {
 namespace {
 
-constexpr std::int64_t kStep_ns = 50'000'000;
+using testing::kStep_ns;
 
 /// Black over `box` of the test rig's image.
 std::shared_ptr<const GrayImage> maskWith(const cv::Rect& box) {

@@ -10,7 +10,10 @@
 #include <vector>
 
 #include "lintel/core/Frame.h"
+#include "lintel/core/FrameTracks.h"
 #include "lintel/core/Rig.h"
+#include "lintel/geometry/Rotation.h"
+#include "lintel/tracking/FrontEnd.h"
 
 namespace lintel::testing {
 
@@ -122,6 +125,23 @@ inline ImuBatch constantRate(std::int64_t t0_ns, std::int64_t t1_ns, const Eigen
     batch.push_back(sample);
   }
   return batch;
+}
+
+constexpr std::int64_t kStep_ns = 50'000'000;  ///< between frames
+
+/// Turns the camera at a constant rate (camera frame) before a scene and tracks it.
+inline std::vector<FrameTracks> trackTurning(const std::vector<Scene>& scenes, const FrontEndParams& params,
+                                             const Eigen::Vector3d& rate_c, const Eigen::Vector3d& bias_b = {0, 0, 0}) {
+  const Rig rig = testRig();
+  FrontEnd front_end(rig, params);
+  std::vector<FrameTracks> result;
+  for (std::size_t i = 0; i < scenes.size(); ++i) {
+    const auto t_ns = static_cast<std::int64_t>(i) * kStep_ns;
+    const Eigen::Quaterniond R_w_c = expRotation(rate_c * 0.05 * static_cast<double>(i));
+    const Frame frame = renderScene(rig, scenes[i], t_ns, R_w_c.conjugate());
+    result.push_back(front_end.process(frame, constantRate(t_ns - kStep_ns, t_ns, rig.T_b_c.q * rate_c + bias_b)));
+  }
+  return result;
 }
 
 }  // namespace lintel::testing

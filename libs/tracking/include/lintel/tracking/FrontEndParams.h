@@ -55,9 +55,10 @@ struct PointTrackerParams {
 
 /// Lines: detected segments, carried from frame to frame [Lim2021, line tracking].
 struct LineTrackerParams {
-  std::string mode =
-      "flow";  ///< flow: predicted by optical flow, merged with detections; descriptor: LBD matches only (baseline)
-  std::string detector = "edge_drawing";  ///< edge_drawing or lsd (slower); both at half resolution
+  /// flow: predicted by optical flow, merged with detections; four_steps: as [Lim2021] describes it; descriptor: LBD
+  /// matches only (baseline)
+  std::string mode = "flow";
+  std::string detector = "edge_drawing";  ///< edge_drawing or lsd (slower, [Lim2021]); both at half resolution
   int gradient_threshold = 24;            ///< of edge_drawing: Sobel response an edge must have
   int detect_every_n = 3;                 ///< frames between detections, mode flow
   int max_lines = 100;                    ///< lines held at once; older, then longer ones first
@@ -77,11 +78,11 @@ struct LineTrackerParams {
   double merge_distance_px = 3;           ///< largest distance of the detection's ends from the predicted line
   int max_frames_without_detection = 20;  ///< a line that only optical flow sees is dropped after this
   int border_px = 4;                      ///< lines end this far from the image border
-  int descriptor_distance = 80;  ///< largest Hamming distance of LBD descriptors (of 256 bits), mode descriptor
+  int descriptor_distance = 80;  ///< largest Hamming distance of LBD descriptors (of 256 bits), not of mode flow
 
   template <class F>
   void fields(F&& field) {
-    field("mode", mode, OneOf{"flow descriptor"});
+    field("mode", mode, OneOf{"flow four_steps descriptor"});
     field("detector", detector, OneOf{"edge_drawing lsd"});
     field("gradient_threshold", gradient_threshold, Range{1, 255});
     field("detect_every_n", detect_every_n, Range{1, 1000});
