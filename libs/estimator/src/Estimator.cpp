@@ -157,7 +157,7 @@ WindowUpdate Estimator::Impl::skipFrame(const FrameTracks& tracks) {
   update.t_ns = tracks.t_ns;
   update.reason = "between window frames";
   if (!tracking_) return update;
-  Preintegration imu(biasOf(window_.frames.back().motion.data()), noise());
+  Preintegration imu(biasOf(window_.frames.back().motion.data()), noise(), rig_.gravity_m_s2);
   imu.append(pending_imu_);
   const InertialState state = propagated(stateOf(window_.frames.back()), imu);
   update.T_w_b = state.T_w_b;
@@ -180,7 +180,7 @@ void Estimator::Impl::addFrame(const FrameTracks& tracks) {
   frame.t_ns = tracks.t_ns;
   if (!window_.frames.empty()) {
     const WindowFrame& before = window_.frames.back();
-    frame.imu = std::make_shared<Preintegration>(biasOf(before.motion.data()), noise());
+    frame.imu = std::make_shared<Preintegration>(biasOf(before.motion.data()), noise(), rig_.gravity_m_s2);
     frame.imu->append(pending_imu_);
     const InertialState state = propagated(stateOf(before), *frame.imu);
     frame.pose = toBlock(state.T_w_b);

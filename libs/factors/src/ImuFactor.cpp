@@ -4,7 +4,6 @@
 #include <Eigen/Cholesky>
 #include <cmath>
 
-#include "lintel/geometry/Frames.h"
 #include "lintel/geometry/Rotation.h"
 
 namespace lintel {
@@ -40,8 +39,9 @@ bool ImuFactor::Evaluate(double const* const* parameters, double* residuals, dou
   const double dt = preintegration_->dt_s();
   const auto delta = preintegration_->corrected(bias_i);
   const Eigen::Matrix3d R_bi_w = T_w_bi.R().transpose();
-  const Eigen::Vector3d velocity_change = R_bi_w * (v_j - v_i - gravityW() * dt);
-  const Eigen::Vector3d position_change = R_bi_w * (T_w_bj.p - T_w_bi.p - v_i * dt - 0.5 * gravityW() * dt * dt);
+  const Eigen::Vector3d g_w = preintegration_->gravityW();
+  const Eigen::Vector3d velocity_change = R_bi_w * (v_j - v_i - g_w * dt);
+  const Eigen::Vector3d position_change = R_bi_w * (T_w_bj.p - T_w_bi.p - v_i * dt - 0.5 * g_w * dt * dt);
 
   Eigen::Map<Eigen::Matrix<double, 15, 1>> r(residuals);
   r.segment<3>(kTheta) = logRotation(delta.delta_R.conjugate() * T_w_bi.q.conjugate() * T_w_bj.q);

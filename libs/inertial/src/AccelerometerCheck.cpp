@@ -48,7 +48,8 @@ const std::vector<Axes>& assignments() {
 
 }  // namespace
 
-AccelerometerCheck::AccelerometerCheck() : misfits_(assignments().size(), 0.0) {}
+AccelerometerCheck::AccelerometerCheck(double gravity_m_s2)
+    : gravity_m_s2_(gravity_m_s2), misfits_(assignments().size(), 0.0) {}
 
 void AccelerometerCheck::add(const ImuBatch& batch, const Eigen::Vector3d& bias_gyro) {
   for (const ImuSample& sample : batch) {
@@ -115,9 +116,9 @@ std::string AccelerometerCheck::sizeFault() const {
   if ((highest_ - lowest_).maxCoeff() < kSilent && turned_rad_ > kTurned_rad)
     return "the accelerometer's values do not change although the IMU turns: check that they are recorded";
   const double seen = gravity();
-  if (std::abs(seen / kGravity - 1) < kSizeTolerance) return {};
+  if (std::abs(seen / gravity_m_s2_ - 1) < kSizeTolerance) return {};
   char text[200];
-  std::snprintf(text, sizeof text, "the accelerometer shows %.2f m/s^2 where gravity is %.2f", seen, kGravity);
+  std::snprintf(text, sizeof text, "the accelerometer shows %.2f m/s^2 where gravity is %.2f", seen, gravity_m_s2_);
   std::string fault = text;
   if (std::abs(seen - 1) < kSizeTolerance)
     fault += ": its values are in g, not in m/s^2";

@@ -3,7 +3,6 @@
 
 #include <Eigen/Cholesky>
 
-#include "lintel/geometry/Frames.h"
 #include "lintel/geometry/Rotation.h"
 
 namespace lintel {
@@ -13,8 +12,8 @@ InertialState propagated(const InertialState& from, const Preintegration& imu) {
   const auto delta = imu.corrected(from.bias);
   InertialState to;
   to.T_w_b.q = (from.T_w_b.q * delta.delta_R).normalized();
-  to.T_w_b.p = from.T_w_b.p + from.v_w_b * dt + 0.5 * gravityW() * dt * dt + from.T_w_b.q * delta.delta_p;
-  to.v_w_b = from.v_w_b + gravityW() * dt + from.T_w_b.q * delta.delta_v;
+  to.T_w_b.p = from.T_w_b.p + from.v_w_b * dt + 0.5 * imu.gravityW() * dt * dt + from.T_w_b.q * delta.delta_p;
+  to.v_w_b = from.v_w_b + imu.gravityW() * dt + from.T_w_b.q * delta.delta_v;
   to.bias = from.bias;
   return to;
 }

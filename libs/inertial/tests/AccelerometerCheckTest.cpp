@@ -12,8 +12,9 @@ namespace lintel {
 namespace {
 
 /// Twelve seconds of a body that tilts by 15 degrees and shakes a little; `change` is what the file makes of it.
-AccelerometerCheck checkOf(const std::function<Eigen::Vector3d(const Eigen::Vector3d&)>& change) {
-  AccelerometerCheck check;
+AccelerometerCheck checkOf(const std::function<Eigen::Vector3d(const Eigen::Vector3d&)>& change,
+                           double gravity_m_s2 = kGravity) {
+  AccelerometerCheck check(gravity_m_s2);
   Eigen::Quaterniond R_w_b = Eigen::Quaterniond::Identity();
   ImuBatch batch;
   for (int i = 0; i < 2400; ++i) {
@@ -47,6 +48,12 @@ TEST(AccelerometerCheck, UnitAndMissingGravityAreNamed) {
   EXPECT_NE(linear.sizeFault().find("taken out"), std::string::npos) << linear.sizeFault();
   EXPECT_NE(checkOf([](const Eigen::Vector3d& f) { return Eigen::Vector3d(2 * f); }).sizeFault().find("unit"),
             std::string::npos);
+}
+
+TEST(AccelerometerCheck, GravityIsThatOfThePlace) {
+  const auto onMars = [](const Eigen::Vector3d& f) { return Eigen::Vector3d(3.71 / 9.81 * f); };
+  EXPECT_NE(checkOf(onMars).sizeFault().find("where gravity is 9.81"), std::string::npos);
+  EXPECT_EQ(checkOf(onMars, 3.71).sizeFault(), "");
 }
 
 TEST(AccelerometerCheck, InterchangedAxesAreNamed) {

@@ -38,6 +38,13 @@ TEST(Propagation, ABodyThatFallsFollowsTheParabola) {
   EXPECT_LT((to.v_w_b - gravityW()).norm(), 1e-9);
 }
 
+TEST(Propagation, ABodyFallsAsFastAsGravitySays) {
+  Preintegration imu({}, {}, 1.62);
+  imu.append({{0, {0, 0, 0}, {0, 0, 0}}, {1'000'000'000, {0, 0, 0}, {0, 0, 0}}});
+  EXPECT_NEAR(propagated({}, imu).T_w_b.p.z(), -0.81, 1e-9);
+  EXPECT_NEAR(propagated({}, imu).v_w_b.z(), -1.62, 1e-9);
+}
+
 TEST(Propagation, MisfitIsMeasuredByTheCovariance) {
   const Preintegration imu = constantReadings(Eigen::Vector3d::Zero(), -gravityW(), {});
   const InertialState from, there = propagated(from, imu);

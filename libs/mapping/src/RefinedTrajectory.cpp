@@ -12,7 +12,7 @@ namespace {
 /// The states that the IMU gives at `times` after `from`, ascending, all within the samples.
 std::vector<InertialState> propagatedTo(const RetiredKeyframe& from, const Preintegration& whole,
                                         const std::vector<std::int64_t>& times) {
-  Preintegration imu(from.bias, whole.noise());
+  Preintegration imu(from.bias, whole.noise(), whole.gravity_m_s2());
   std::vector<InertialState> states;
   std::size_t next = 0;
   const ImuBatch& samples = whole.samples();

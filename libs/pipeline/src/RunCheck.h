@@ -23,7 +23,7 @@ class RunCheck {
  public:
   /// `clock_offset_s`: by which the stamps have been corrected.
   explicit RunCheck(const Rig& rig, double clock_offset_s = 0)
-      : rig_(rig), clock_offset_s_(clock_offset_s), turns_(rig.T_b_c.q) {}
+      : rig_(rig), clock_offset_s_(clock_offset_s), accelerometer_(rig.gravity_m_s2), turns_(rig.T_b_c.q) {}
 
   /// A frame, as tracked, and what the estimator made of it.
   void add(const TrackedFrame& frame, const WindowUpdate& update);

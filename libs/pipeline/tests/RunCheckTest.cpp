@@ -66,6 +66,7 @@ TEST(RunCheck, AGoodRunHasNoVerdict) {
 
 TEST(RunCheck, AWrongGravityIsNamedFirst) {
   EXPECT_NE(verdictOf(1, 40).find("in g"), std::string::npos) << verdictOf(1, 40);
+  EXPECT_NE(verdictOf(0.01, 40).find("gravity has been taken out"), std::string::npos) << verdictOf(0.01, 40);
 }
 
 TEST(RunCheck, ADivergedRunIsNoGoodOne) {

@@ -109,6 +109,9 @@ class LintelVio {
         .option("--mask", recording_params_.mask,
                 "Image of the camera's size: nothing is detected or tracked where it is black")
         .type("FILE");
+    line_.option("--gravity", recording_params_.gravity_m_s2, "Gravity where the recording was made [m/s^2]")
+        .range(1.0, 30.0)
+        .showDefault();
     line_.flag("--info", info_,
                "List the recording's sensors, describe its rig, say what looks wrong with it, and stop");
     line_.option("--save-calibration", info_request_.save_calibration, "With --info: write the rig to this file")

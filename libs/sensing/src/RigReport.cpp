@@ -40,7 +40,7 @@ std::vector<std::string> mountingDoubts(const Rig& rig, const Eigen::Vector3d& m
   if (std::abs(norm - 1) < 0.2)
     doubts.push_back("the accelerometer measures about 1 at first: is it in g? m/s^2 is needed");
   if (norm < 0.3) doubts.push_back("the accelerometer measures about 0 at first: gravity must not be taken out");
-  if (std::abs(norm - 9.81) > 2) return doubts;
+  if (std::abs(norm / rig.gravity_m_s2 - 1) > 0.2) return doubts;
   const Eigen::Matrix3d R_b_c = rig.T_b_c.q.toRotationMatrix();
   // 60 and 30 degrees: cameras are mounted upright, on their side or head, and tilted
   if (uprightness(R_b_c, mean_accel) < 0.5 && uprightness(R_b_c.transpose(), mean_accel) > 0.866)
@@ -64,6 +64,7 @@ RigReport reportRig(const std::string& recording, const RecordingParams& params)
   } else {
     const auto stream = openStream(recording, params);
     report.rig = stream->rig();
+    report.rig.gravity_m_s2 = params.gravity_m_s2;
     warnings = stream->openingWarnings();
     if (params.calibration.empty())
       for (std::string& doubt : rigDoubts(report.rig)) report.warnings.push_back(std::move(doubt));

@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "ImageFile.h"
+#include "lintel/core/ParamRange.h"
 
 namespace lintel {
 namespace {
@@ -36,6 +37,8 @@ StreamRecording::StreamRecording(std::unique_ptr<SensorStream> stream, const Rec
       producer_(std::move(stream), params),
       queue_(params.frames_ahead) {
   rig_.mask = readMask(params.mask, rig_.camera);
+  checkAllowed("gravity_m_s2", params.gravity_m_s2, Range{1, 30});
+  rig_.gravity_m_s2 = params.gravity_m_s2;
 }
 
 StreamRecording::~StreamRecording() {

@@ -33,7 +33,7 @@ class StreamRecording final : public Recording {
   ItemPtr take();
   void runAhead();
 
-  Rig rig_;  ///< the stream's, with the mask
+  Rig rig_;  ///< the stream's, with mask and gravity of the parameters
   std::size_t expected_frames_;
   bool runs_ahead_;
   WarningLog log_;

@@ -178,6 +178,15 @@ TEST_F(EurocRecordingTest, NamedCameraIsRead) {
   EXPECT_EQ(readAll(root_).steps[0].frame.image->pixels[0], 0);
 }
 
+TEST_F(EurocRecordingTest, GravityIsThatOfTheParameters) {
+  RecordingParams params;
+  EXPECT_EQ(openRecording(root_, params)->rig().gravity_m_s2, 9.81);
+  params.gravity_m_s2 = 3.71;
+  EXPECT_EQ(openRecording(root_, params)->rig().gravity_m_s2, 3.71);
+  params.gravity_m_s2 = 0;
+  EXPECT_THROW(openRecording(root_, params), std::invalid_argument);
+}
+
 TEST_F(EurocRecordingTest, TheMaskHasTheCamerasSize) {
   const auto write = [&](const char* name, int width, int grey) {
     cv::imwrite(folder_ / name, cv::Mat(24, width, CV_8U, cv::Scalar(grey)));

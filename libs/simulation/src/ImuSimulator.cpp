@@ -37,6 +37,7 @@ SimulatedImu simulateImu(const Trajectory& trajectory, const Rig& rig, const Imu
   const double walk_gyro = walk * rig.imu_noise.gyro_walk * std::sqrt(step_s);
   const double walk_accel = walk * rig.imu_noise.accel_walk * std::sqrt(step_s);
 
+  const Eigen::Vector3d g_w = gravityW(rig.gravity_m_s2);
   RandomStream start(params.seed, 0x62696173), white(params.seed, 0x696d75), steps(params.seed, 0x77616c6b);
   InertialTruth truth;
   if (params.biases) {
@@ -52,7 +53,7 @@ SimulatedImu simulateImu(const Trajectory& trajectory, const Rig& rig, const Imu
     const Eigen::Quaterniond R_b_w = truth.state.T_w_b.q.conjugate();
     imu.truth.push_back(truth);
     imu.samples.push_back({truth.t_ns, truth.state.omega_b + truth.bias_gyro + white.gaussian3(sigma_gyro),
-                           R_b_w * (truth.state.a_w_b - gravityW()) + truth.bias_accel + white.gaussian3(sigma_accel)});
+                           R_b_w * (truth.state.a_w_b - g_w) + truth.bias_accel + white.gaussian3(sigma_accel)});
     truth.bias_gyro += steps.gaussian3(walk_gyro);
     truth.bias_accel += steps.gaussian3(walk_accel);
   }

@@ -122,7 +122,7 @@ void reweigh(PointSystem& point, const std::vector<Motion>& motions, const Vecto
 
 }  // namespace
 
-Vector6 solveWithGravityNorm(const Matrix6& A, const Vector6& b) {
+Vector6 solveWithGravityNorm(const Matrix6& A, const Vector6& b, double gravity_m_s2) {
   // v eliminated: (D - mu I) g = d with |g| fixed; mu below the smallest eigenvalue is the global minimum
   const Eigen::Matrix3d Avv_inverse = A.topLeftCorner<3, 3>().inverse(), Agv = A.bottomLeftCorner<3, 3>();
   const Eigen::Matrix3d D = A.bottomRightCorner<3, 3>() - Agv * Avv_inverse * Agv.transpose();
@@ -132,10 +132,10 @@ Vector6 solveWithGravityNorm(const Matrix6& A, const Vector6& b) {
   const auto normAt = [&](double mu) { return (e.array() / (l.array() - mu)).matrix().norm(); };
   double high = l[0] - 1e-12 * std::max(1.0, std::abs(l[0])), span = std::max(1e-6, std::abs(l[2]));
   double low = l[0] - span;
-  while (normAt(low) > kGravity) low = l[0] - (span *= 2);
+  while (normAt(low) > gravity_m_s2) low = l[0] - (span *= 2);
   for (int i = 0; i < 200 && high - low > 1e-15 * span; ++i) {
     const double middle = 0.5 * (low + high);
-    (normAt(middle) > kGravity ? high : low) = middle;
+    (normAt(middle) > gravity_m_s2 ? high : low) = middle;
   }
   const double mu = 0.5 * (low + high);
   Vector6 x;
@@ -163,7 +163,7 @@ GravityAlignment alignGravity(const SlidingWindow& window) {
       b -= h * (hb / hh);
     }
     if (symmetricEigen<Eigen::Dynamic>(A).values[0] < 1e-14) return result;
-    x = solveWithGravityNorm(A, b);
+    x = solveWithGravityNorm(A, b, window.frames.back().imu->gravity_m_s2());
     if (!x.allFinite()) return result;
     for (PointSystem& point : points) reweigh(point, motions, x, kWidth_rad * (round < 2 ? 4 : 1));
   }

@@ -22,8 +22,8 @@ struct GravityAlignment {
 /// The pre-integrations must be at the gyro bias found before.
 GravityAlignment alignGravity(const SlidingWindow& window);
 
-/// min x^T A x - 2 b^T x with |x_tail3| = gravity, x = (v, g): exposed for its test.
+/// min x^T A x - 2 b^T x with |x_tail3| = gravity_m_s2, x = (v, g): exposed for its test.
 Eigen::Matrix<double, 6, 1> solveWithGravityNorm(const Eigen::Matrix<double, 6, 6>& A,
-                                                 const Eigen::Matrix<double, 6, 1>& b);
+                                                 const Eigen::Matrix<double, 6, 1>& b, double gravity_m_s2);
 
 }  // namespace lintel

@@ -45,7 +45,7 @@ TEST(SolveWithGravityNorm, IsAsGoodAsBruteForce) {
     const Matrix6 A = J.transpose() * J;
     Vector6 b;
     for (double& v : b) v = 10 * gauss(random);
-    const Vector6 x = solveWithGravityNorm(A, b);
+    const Vector6 x = solveWithGravityNorm(A, b, kGravity);
     EXPECT_NEAR(x.tail<3>().norm(), kGravity, 1e-8);
     const double brute = bruteForce(A, b), cost = costOf(A, b, x);
     EXPECT_LE(cost, brute + 1e-9 * std::abs(brute)) << "trial " << trial;
@@ -57,7 +57,7 @@ TEST(SolveWithGravityNorm, FindsWhatTheSystemWasMadeOf) {
   const Vector6 truth = (Vector6() << 0.5, -1, 0.2, 0, 6, -std::sqrt(kGravity * kGravity - 36)).finished();
   Matrix6 A = Vector6(1, 2, 3, 4, 5, 6).asDiagonal();
   A(0, 4) = A(4, 0) = 0.7;
-  EXPECT_LT((solveWithGravityNorm(A, A * truth) - truth).norm(), 1e-6);
+  EXPECT_LT((solveWithGravityNorm(A, A * truth, kGravity) - truth).norm(), 1e-6);
 }
 
 /// Errors of gravity's direction [rad] and of the velocity [m/s] for a buffer from frame `first`.

@@ -5,6 +5,7 @@
 
 #include "lintel/core/Frame.h"
 #include "lintel/geometry/Camera.h"
+#include "lintel/geometry/Frames.h"
 #include "lintel/geometry/Pose.h"
 
 namespace lintel {
@@ -25,6 +26,7 @@ struct Rig {
   double line_delay_s = 0;  ///< rolling shutter: from row to row; a frame's time is that of the middle row
   ImuNoise imu_noise;
   double imu_rate_hz = 200;
+  double gravity_m_s2 = kGravity;         ///< where the recording was made
   std::shared_ptr<const GrayImage> mask;  ///< of the camera's size, black where images are not used; null: nowhere
 
   double readout_s() const { return line_delay_s * camera.height; }  ///< of an image: from its first to its last row

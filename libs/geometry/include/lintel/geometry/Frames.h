@@ -3,7 +3,7 @@
 
 // Frames of reference, named by one letter everywhere in Lintel:
 //
-//   w  world: z up, gravity (0, 0, -9.81) m/s^2; origin and yaw are those of the first pose
+//   w  world: z up, gravity (0, 0, -9.81) m/s^2 or as the rig says; origin and yaw are those of the first pose
 //   b  body: the IMU
 //   c  camera: x right, y down, z forward
 //   l  line: the reference point a line's moment is taken about (PluckerLine.h)
@@ -25,10 +25,10 @@
 
 namespace lintel {
 
-/// Standard gravity of the EuRoC halls [m/s^2]; the world's gravity vector is (0, 0, -kGravity).
+/// Gravity of the EuRoC halls [m/s^2], and within 0.3 % that of every place on earth.
 constexpr double kGravity = 9.81;
 
-/// Gravity acceleration in the world frame [m/s^2].
-inline Eigen::Vector3d gravityW() { return {0.0, 0.0, -kGravity}; }
+/// Gravity acceleration in the world frame, where its size is `gravity_m_s2`.
+inline Eigen::Vector3d gravityW(double gravity_m_s2 = kGravity) { return {0.0, 0.0, -gravity_m_s2}; }
 
 }  // namespace lintel

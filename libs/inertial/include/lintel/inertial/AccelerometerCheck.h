@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "lintel/core/Frame.h"
+#include "lintel/geometry/Frames.h"
 #include "lintel/geometry/Pose.h"
 
 namespace lintel {
@@ -17,7 +18,8 @@ namespace lintel {
 /// least is the likely one. (All three signs together make no difference here.)
 class AccelerometerCheck {
  public:
-  AccelerometerCheck();
+  /// `gravity_m_s2`: where the samples were taken.
+  explicit AccelerometerCheck(double gravity_m_s2 = kGravity);
 
   /// Samples between two frames (core/Frame.h), ascending; `bias_gyro` as far as it is known.
   void add(const ImuBatch& batch, const Eigen::Vector3d& bias_gyro);
@@ -40,6 +42,7 @@ class AccelerometerCheck {
   void closeMean();
   void closeSpan();
 
+  double gravity_m_s2_;
   std::int64_t last_ns_ = 0, mean_start_ns_ = 0, span_start_ns_ = 0;
   Eigen::Quaterniond R_ = Eigen::Quaterniond::Identity();  ///< body axes now, in those of the span's start
   Eigen::Matrix<double, 9, 3> sum_ = Eigen::Matrix<double, 9, 3>::Zero();  ///< of R's columns by accelerations

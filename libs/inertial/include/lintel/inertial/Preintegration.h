@@ -6,6 +6,7 @@
 
 #include "lintel/core/Frame.h"
 #include "lintel/core/Rig.h"
+#include "lintel/geometry/Frames.h"
 
 namespace lintel {
 
@@ -26,7 +27,10 @@ class Preintegration {
   /// Order of the error state of covariance and Jacobians.
   enum Order { kTheta = 0, kVelocity = 3, kPosition = 6 };
 
-  Preintegration(const ImuBias& bias, const ImuNoise& noise) : bias_(bias), noise_(noise) {}
+  /// `gravity_m_s2`: where the samples were taken; the deltas do not depend on it, the states between which they are
+  /// do.
+  Preintegration(const ImuBias& bias, const ImuNoise& noise, double gravity_m_s2 = kGravity)
+      : bias_(bias), noise_(noise), gravity_m_s2_(gravity_m_s2) {}
 
   /// Appends samples; the first one must be the last of those before (or start the interval).
   void append(const ImuBatch& samples);
@@ -40,6 +44,8 @@ class Preintegration {
   double dt_s() const { return dt_s_; }
   const ImuBias& bias() const { return bias_; }
   const ImuNoise& noise() const { return noise_; }
+  double gravity_m_s2() const { return gravity_m_s2_; }
+  Eigen::Vector3d gravityW() const { return lintel::gravityW(gravity_m_s2_); }
   const ImuBatch& samples() const { return samples_; }
   const Eigen::Quaterniond& deltaR() const { return delta_R_; }
   const Eigen::Vector3d& deltaV() const { return delta_v_; }
@@ -63,6 +69,7 @@ class Preintegration {
 
   ImuBias bias_;
   ImuNoise noise_;
+  double gravity_m_s2_;
   ImuBatch samples_;
   double dt_s_ = 0;
   Eigen::Quaterniond delta_R_ = Eigen::Quaterniond::Identity();

@@ -29,6 +29,7 @@ struct RecordingParams {
   std::string times_file;                ///< of a film or a folder of images; empty = the one beside it (PlainStream.h)
   std::string imu_file;                  ///< the same of the IMU's samples; GYRO,ACCEL where they are two
   std::string mask;                      ///< image of the camera's size, black where images are not used; empty = none
+  double gravity_m_s2 = kGravity;        ///< where the recording was made; 1 to 30
   std::size_t frames_ahead = 8;          ///< frames decoded ahead on another thread; 0 = decode when asked
 };
 
