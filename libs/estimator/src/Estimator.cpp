@@ -22,6 +22,7 @@
 #include "window/KeyframeSelection.h"
 #include "window/OutlierRejection.h"
 #include "window/RollingShutter.h"
+#include "window/WindowCovariance.h"
 #include "window/WindowMarginalization.h"
 #include "window/WindowMove.h"
 #include "window/WindowRetirement.h"
@@ -87,12 +88,16 @@ class Estimator::Impl {
   void moveToAnchor();
   void countLandmarks(WindowUpdate& update) const;
   void fillPose(WindowUpdate& update);
+  void startDrift(WindowUpdate& update);
+  std::vector<const WindowFrame*> replacingFrames(const WindowUpdate& update) const;
 
   Rig rig_;
   EstimatorParams params_;
   NoiseMeter noise_;
   Initializer initializer_;
   SlidingWindow window_;
+  std::optional<WindowCovariance> sigma_;                        // of the last solve
+  StateCovariance newest_covariance_ = StateCovariance::Zero();  // of the newest window frame
   bool tracking_ = false;
   std::uint64_t frames_seen_ = 0, poses_ = 0;
   FrameId next_frame_id_ = 0;
@@ -163,6 +168,7 @@ WindowUpdate Estimator::Impl::skipFrame(const FrameTracks& tracks) {
   update.T_w_b = state.T_w_b;
   update.v_w_b = state.v_w_b;
   update.bias = state.bias;
+  update.covariance = propagatedCovariance(stateOf(window_.frames.back()), imu, newest_covariance_);
   update.status = EstimatorStatus::kPropagated;
   return update;
 }
@@ -218,16 +224,36 @@ void Estimator::Impl::initialise(WindowUpdate& update) {
   solve(update);
   update.status = EstimatorStatus::kTracking;
   first_pose_ns_ = update.t_ns;
+  startDrift(update);
   if (replaces_from_ns_) replaceWrongStart(update);
   while (static_cast<int>(window_.frames.size()) > params_.keyframes) dropOldest(update);
   fillPose(update);
 }
 
-/// Poses of what the wrong start had given some for.
-void Estimator::Impl::replaceWrongStart(WindowUpdate& update) {
+/// Frames of this start that the wrong one had given poses for.
+std::vector<const WindowFrame*> Estimator::Impl::replacingFrames(const WindowUpdate& update) const {
+  std::vector<const WindowFrame*> frames;
   for (const WindowFrame& frame : window_.frames)
-    if (frame.t_ns >= *replaces_from_ns_ && frame.t_ns < update.t_ns)
-      update.replaced.emplace_back(frame.t_ns, frame.T_w_b());
+    if (replaces_from_ns_ && frame.t_ns >= *replaces_from_ns_ && frame.t_ns < update.t_ns) frames.push_back(&frame);
+  return frames;
+}
+
+/// Covariances are relative to the first pose from here on.
+void Estimator::Impl::startDrift(WindowUpdate& update) {
+  const WindowFrame& newest = window_.frames.back();
+  const auto replacing = replacingFrames(update);
+  if (replacing.empty()) {
+    newest_covariance_ = sigma_->start(window_, newest.id);
+    return;
+  }
+  for (const WindowFrame* frame : replacing)
+    update.replaced_covariances.push_back(frame == replacing.front() ? sigma_->start(window_, frame->id)
+                                                                     : sigma_->of(window_, *frame));
+  newest_covariance_ = sigma_->of(window_, newest);
+}
+
+void Estimator::Impl::replaceWrongStart(WindowUpdate& update) {
+  for (const WindowFrame* frame : replacingFrames(update)) update.replaced.emplace_back(frame->t_ns, frame->T_w_b());
   if (!update.replaced.empty()) first_pose_ns_ = update.replaced.front().first;
   replaces_from_ns_.reset();
 }
@@ -257,6 +283,7 @@ void Estimator::Impl::track(WindowUpdate& update) {
   update.at_rest = newest.at_rest;
   update.blind = newest.blind;
   update.status = EstimatorStatus::kTracking;
+  newest_covariance_ = sigma_->of(window_, window_.frames.back());
   if (static_cast<int>(window_.frames.size()) > params_.keyframes) shrink(keyframe, update);
   fillPose(update);
 }
@@ -268,8 +295,10 @@ void Estimator::Impl::solve(WindowUpdate& update) {
   if (params_.degeneracy.lines == "constrain") groupParallelLines(window_, params_);
   WindowFactors factors(window_, params_.factors);
   factors.addAll(params_, rig_.T_b_c);
-  const SolveLimits limits{params_.max_iterations, kSettledMove};
-  update.iterations = solveWindow(window_, factors.factors(), params_.calibration, limits).iterations;
+  const SolveLimits limits{params_.max_iterations, kSettledMove, true};
+  SolveSummary solved = solveWindow(window_, factors.factors(), params_.calibration, limits);
+  update.iterations = solved.iterations;
+  sigma_.emplace(std::move(solved.information));
   rejectOutliers(window_, params_.landmarks);
   for (auto& [id, track] : window_.lines)
     if (entersProblem(track, params_.degeneracy)) updateLineUncertainty(window_, params_, track);
@@ -291,6 +320,7 @@ void Estimator::Impl::shrink(bool second_newest_is_keyframe, WindowUpdate& updat
 
 void Estimator::Impl::dropOldest(WindowUpdate& update) {
   const FrameId leaving = window_.frames.front().id;
+  sigma_->holdNext(window_);
   EstimatorParams params = params_;
   if (tracks_since_start_ <= kTrialFrames)
     params.landmarks.lasting_points = 0;  // linearised where the start went wrong
@@ -302,6 +332,7 @@ void Estimator::Impl::dropOldest(WindowUpdate& update) {
 
 void Estimator::Impl::dropSecondNewest(WindowUpdate& update) {
   const FrameId leaving = window_.frames[window_.frames.size() - 2].id;
+  sigma_->forget(window_, leaving);
   marginaliseSecondNewest(window_);
   retireTracks(window_, leaving, false, update);
   window_.removeFrame(leaving, false);
@@ -383,6 +414,7 @@ void Estimator::Impl::fillPose(WindowUpdate& update) {
   update.T_w_b = newest.T_w_b();
   update.v_w_b = velocityOf(newest.motion.data());
   update.bias = biasOf(newest.motion.data());
+  update.covariance = newest_covariance_;
   constexpr std::uint64_t kSigmaEvery = 10;  // a second: biases and their sigmas change slowly
   if (poses_++ % kSigmaEvery == 0) update.bias_sigma = windowSigma(window_, params_, rig_.T_b_c).bias;
 }

@@ -77,14 +77,28 @@ Json jsonOf(const LineErrors& e) {
           {"constrained_matched", jsonOf(e.constrained_matched)}};
 }
 
+Json jsonOf(const SquaredErrorSummary& s) {
+  return {{"freedom", s.freedom}, {"mean", s.mean}, {"low", s.low}, {"high", s.high}, {"inside", s.inside}};
+}
+
+Json jsonOf(const Consistency& c) {
+  return {{"poses", c.poses},
+          {"pieces", c.pieces},
+          {"nees_position", jsonOf(c.position)},
+          {"nees_yaw", jsonOf(c.yaw)},
+          {"nees_roll_pitch", jsonOf(c.roll_pitch)}};
+}
+
 }  // namespace
 
 std::string toJson(const std::optional<TrajectoryErrors>& trajectory,
-                   const std::optional<TrajectoryErrors>& map_trajectory, const std::optional<LineErrors>& lines) {
+                   const std::optional<TrajectoryErrors>& map_trajectory, const std::optional<LineErrors>& lines,
+                   const std::optional<Consistency>& consistency) {
   Json json = Json::object();
   if (trajectory) json["trajectory"] = jsonOf(*trajectory);
   if (map_trajectory) json["map_trajectory"] = jsonOf(*map_trajectory);
   if (lines) json["lines"] = jsonOf(*lines);
+  if (consistency) json["consistency"] = jsonOf(*consistency);
   return json.dump(2) + "\n";
 }
 

@@ -51,7 +51,22 @@ void printSegmentErrors(const char* name, const SegmentErrors& e, std::ostream& 
       << " deg  distance median " << fixed(e.distance_median_m, 3) << " m\n";
 }
 
+void printSquared(const char* name, const SquaredErrorSummary& s, std::ostream& out) {
+  out << "  " << std::left << std::setw(14) << name << "mean " << std::right << std::setw(8) << fixed(s.mean, 2)
+      << " (right: " << s.freedom << ")  " << std::setw(5) << fixed(100 * s.inside, 1) << " % of the poses within "
+      << fixed(s.low, 3) << " to " << fixed(s.high, 2) << " (right: 95 %)\n";
+}
+
 }  // namespace
+
+void printText(const Consistency& c, std::ostream& out) {
+  out << "consistency     squared errors by the covariances (NEES) of " << c.poses
+      << " poses, relative to the first pose" << (c.pieces > 1 ? " of " + std::to_string(c.pieces) + " pieces" : "")
+      << "\n";
+  printSquared("position", c.position, out);
+  printSquared("yaw", c.yaw, out);
+  printSquared("roll, pitch", c.roll_pitch, out);
+}
 
 void printText(const TrajectoryErrors& e, std::ostream& out) {
   out << "trajectory      " << e.poses << " poses, " << e.pairs << " with ground truth, from "

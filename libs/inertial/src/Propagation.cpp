@@ -18,6 +18,33 @@ InertialState propagated(const InertialState& from, const Preintegration& imu) {
   return to;
 }
 
+StateCovariance propagatedCovariance(const InertialState& from, const Preintegration& imu,
+                                     const StateCovariance& covariance) {
+  constexpr int kP = 0, kR = 3, kV = 6, kBias = 9;  // in the state; Preintegration has another order
+  const double dt = imu.dt_s();
+  const auto delta = imu.corrected(from.bias);
+  const Eigen::Matrix3d R = from.T_w_b.R();
+  const auto& by_bias = imu.biasJacobian();
+  StateCovariance by_state = StateCovariance::Identity();
+  by_state.block<3, 3>(kP, kV) = dt * Eigen::Matrix3d::Identity();
+  by_state.block<3, 3>(kP, kR) = -R * skew(delta.delta_p);
+  by_state.block<3, 6>(kP, kBias) = R * by_bias.middleRows<3>(Preintegration::kPosition);
+  by_state.block<3, 3>(kV, kR) = -R * skew(delta.delta_v);
+  by_state.block<3, 6>(kV, kBias) = R * by_bias.middleRows<3>(Preintegration::kVelocity);
+  by_state.block<3, 3>(kR, kR) = delta.delta_R.toRotationMatrix().transpose();
+  by_state.block<3, 6>(kR, kBias) = rightJacobian(delta.delta_theta) * by_bias.middleRows<3>(Preintegration::kTheta);
+  Eigen::Matrix<double, 15, 9> by_noise = Eigen::Matrix<double, 15, 9>::Zero();
+  by_noise.block<3, 3>(kP, Preintegration::kPosition) = R;
+  by_noise.block<3, 3>(kV, Preintegration::kVelocity) = R;
+  by_noise.block<3, 3>(kR, Preintegration::kTheta).setIdentity();
+  StateCovariance result = by_state * covariance * by_state.transpose();
+  result += by_noise * imu.covariance() * by_noise.transpose();
+  const ImuNoise& noise = imu.noise();
+  result.diagonal().segment<3>(kBias).array() += noise.gyro_walk * noise.gyro_walk * dt;
+  result.diagonal().segment<3>(kBias + 3).array() += noise.accel_walk * noise.accel_walk * dt;
+  return result;
+}
+
 double squaredMisfit(const InertialState& from, const InertialState& to, const Preintegration& imu) {
   const InertialState expected = propagated(from, imu);
   const Eigen::Quaterniond R_b_w = from.T_w_b.q.conjugate();  // of the earlier body

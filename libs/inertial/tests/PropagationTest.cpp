@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 #include "lintel/geometry/Frames.h"
 #include "lintel/geometry/Rotation.h"
 
@@ -62,6 +64,58 @@ TEST(Propagation, MisfitIsMeasuredByTheCovariance) {
   off = there;
   off.T_w_b.q = off.T_w_b.q * expRotation({0, 0, 3 * 1.6968e-4});  // about the vertical: it turns no acceleration
   EXPECT_NEAR(squaredMisfit(from, off, imu), 9, 0.1);
+}
+
+/// What `to` differs from `from` by, in the order of StateCovariance.
+Eigen::Matrix<double, 15, 1> difference(const InertialState& to, const InertialState& from) {
+  Eigen::Matrix<double, 15, 1> d;
+  d << to.T_w_b.p - from.T_w_b.p, logRotation(from.T_w_b.q.conjugate() * to.T_w_b.q), to.v_w_b - from.v_w_b,
+      to.bias.gyro - from.bias.gyro, to.bias.accel - from.bias.accel;
+  return d;
+}
+
+InertialState moved(const InertialState& from, const Eigen::Matrix<double, 15, 1>& d) {
+  InertialState to = from;
+  to.T_w_b.p += d.head<3>();
+  to.T_w_b.q = from.T_w_b.q * expRotation(d.segment<3>(3));
+  to.v_w_b += d.segment<3>(6);
+  to.bias.gyro += d.segment<3>(9);
+  to.bias.accel += d.tail<3>();
+  return to;
+}
+
+TEST(Propagation, CovarianceIsCarriedAsErrorsAre) {
+  const Preintegration imu = constantReadings({0.3, -0.5, 0.8}, {1, -2, 9}, {{0.01, 0, 0}, {0, 0.1, 0}});
+  InertialState from;
+  from.T_w_b = {expRotation({0.2, -0.6, 0.4}), {1, 2, 3}};
+  from.v_w_b = {0.5, -0.2, 0.1};
+  from.bias = imu.bias();
+  constexpr double kStep = 1e-6;
+  StateCovariance by_state;
+  for (int k = 0; k < 15; ++k) {
+    const Eigen::Matrix<double, 15, 1> d = kStep * Eigen::Matrix<double, 15, 1>::Unit(k);
+    by_state.col(k) = difference(propagated(moved(from, d), imu), propagated(moved(from, -d), imu)) / (2 * kStep);
+  }
+  StateCovariance root = StateCovariance::Identity();
+  for (int i = 0; i < 15; ++i)
+    for (int j = 0; j < i; ++j) root(i, j) = 0.3 * std::sin(1 + 2.3 * i + 1.7 * j);
+  const StateCovariance P = root * root.transpose();
+  const StateCovariance noise = propagatedCovariance(from, imu, StateCovariance::Zero());
+  const StateCovariance expected = by_state * P * by_state.transpose() + noise;
+  EXPECT_LT((propagatedCovariance(from, imu, P) - expected).norm(), 1e-5 * expected.norm());
+}
+
+TEST(Propagation, CovarianceGainsTheNoiseOfTheSamples) {
+  const Preintegration imu = constantReadings({0.3, -0.5, 0.8}, {1, -2, 9}, {});
+  InertialState from;
+  from.T_w_b.q = expRotation({0.2, -0.6, 0.4});
+  const StateCovariance noise = propagatedCovariance(from, imu, StateCovariance::Zero());
+  const auto trace = [](const auto& m, int at) { return m.diagonal().template segment<3>(at).sum(); };
+  EXPECT_NEAR(trace(noise, 0), trace(imu.covariance(), Preintegration::kPosition), 1e-12);
+  EXPECT_NEAR(trace(noise, 3), trace(imu.covariance(), Preintegration::kTheta), 1e-12);
+  EXPECT_NEAR(trace(noise, 6), trace(imu.covariance(), Preintegration::kVelocity), 1e-12);
+  EXPECT_NEAR(noise(9, 9), imu.noise().gyro_walk * imu.noise().gyro_walk, 1e-15);
+  EXPECT_NEAR(noise(14, 14), imu.noise().accel_walk * imu.noise().accel_walk, 1e-12);
 }
 
 }  // namespace

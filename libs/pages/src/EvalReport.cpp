@@ -53,6 +53,26 @@ void mapSection(const Evaluation& e, HtmlPage& page) {
 
 }  // namespace
 
+void consistencySection(const Consistency& c, HtmlPage& page) {
+  page.heading("Errors and their standard deviations");
+  Table table{"nees",
+              "Squared errors in units of the estimated covariance, relative to the first pose",
+              {"", "mean", "right", "poses within the 95 % bounds", "bounds"},
+              {},
+              {}};
+  for (const auto& [name, s] : {std::pair<std::string, SquaredErrorSummary>{"position", c.position},
+                                {"yaw", c.yaw},
+                                {"roll, pitch", c.roll_pitch}})
+    table.rows.push_back({name, fixedText(s.mean, 2), std::to_string(s.freedom), fixedText(100 * s.inside, 1) + " %",
+                          fixedText(s.low, 3) + " to " + fixedText(s.high, 2)});
+  page.table(table);
+  page.beginGallery();
+  for (int axis = 0; axis < 3; ++axis)
+    page.figure(errorWithSigma(c, axis), std::string("Position error along ") + "xyz"[axis] +
+                                             "; the band is three standard deviations to both sides");
+  page.endGallery();
+}
+
 std::vector<std::vector<std::string>> trajectoryRows(const TrajectoryErrors& e) {
   return {{"alignment", nameOf(e.alignment)},
           {"poses with ground truth", std::to_string(e.pairs) + " of " + std::to_string(e.poses)},
@@ -70,6 +90,7 @@ std::vector<std::vector<std::string>> trajectoryRows(const TrajectoryErrors& e) 
 std::string evaluationPage(const Evaluation& evaluation) {
   HtmlPage page("Evaluation of " + (evaluation.trajectory ? evaluation.estimate_name : evaluation.map_name));
   if (evaluation.trajectory) trajectorySection(evaluation, page);
+  if (evaluation.consistency) consistencySection(*evaluation.consistency, page);
   if (evaluation.lines) mapSection(evaluation, page);
   return page.text();
 }

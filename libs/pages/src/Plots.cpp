@@ -83,6 +83,21 @@ Figure errorOverTime(const NamedErrors& errors) {
   return figure;
 }
 
+Figure errorWithSigma(const Consistency& consistency, int axis) {
+  Figure figure{"", "time [s]", std::string("error in ") + "xyz"[axis] + " [m]"};
+  Curve band{"3 sigma", {}, CurveStyle::kBand, plotColour(0)}, error{"error", {}, CurveStyle::kLine, "#000000", 1};
+  const std::size_t count = consistency.series.size(), step = std::max<std::size_t>(1, count / kMostPoints);
+  for (std::size_t i = 0; i < count; i += step) {
+    const SigmaSample& sample = consistency.series[i];
+    const double t_s = secondsBetween(consistency.series.front().t_ns, sample.t_ns);
+    for (const int side : {1, -1}) band.points.push_back({t_s, side * 3 * sample.sigma_m[axis]});
+    error.points.push_back({t_s, sample.error_m[axis]});
+  }
+  figure.curves = {band, error};
+  figure.height_px = 260;
+  return figure;
+}
+
 Figure relativeErrorBoxes(const NamedErrors& errors) {
   Figure figure{"", "length of the stretch", "translation error [% of the length]"};
   std::vector<double> lengths_m;

@@ -78,6 +78,7 @@ class Report {
     try {
       errors_ = evaluateTrajectory(poses_, record.groundtruth, params);
       if (!refined_.empty()) refined_errors_ = evaluateTrajectory(refined_, record.groundtruth, params);
+      if (knowsCovariances()) consistency_ = evaluateConsistency(poses_, covariances(), record.groundtruth, params);
     } catch (const EvaluationError& error) {
       truth_fault_ = error.what();
     }
@@ -97,6 +98,17 @@ class Report {
   }
 
  private:
+  bool knowsCovariances() const {
+    return std::any_of(result_.trajectory.begin(), result_.trajectory.end(),
+                       [](const OdometryPose& pose) { return pose.covariance.back() > 0; });
+  }
+
+  std::vector<PoseCovariance> covariances() const {
+    std::vector<PoseCovariance> covariances;
+    for (const OdometryPose& pose : result_.trajectory) covariances.push_back(covarianceOf(pose));
+    return covariances;
+  }
+
   double secondsAt(const RunFrame& frame) const { return 1e-9 * static_cast<double>(frame.t_ns - t0_ns_); }
 
   /// A curve over time; only frames in the window where `window_only`.
@@ -165,6 +177,7 @@ class Report {
     page_.figure(speed(), "Speed over time");
     page_.endGallery();
     if (errors_) errorTable();
+    if (consistency_) consistencySection(*consistency_, page_);
     const std::string& fault = truth_fault_.empty() ? record_.truth_fault : truth_fault_;
     if (!errors_)
       page_.paragraph(fault.empty() ? "The recording carries no ground truth: no errors can be given."
@@ -348,6 +361,7 @@ class Report {
   StampedPoses poses_, refined_;
   std::int64_t t0_ns_ = 0;
   std::optional<TrajectoryErrors> errors_, refined_errors_;
+  std::optional<Consistency> consistency_;
   std::string truth_fault_;
 };
 

@@ -8,6 +8,27 @@
 
 namespace lintel {
 
+namespace {
+
+/// Of the pose's part.
+std::array<float, 21> triangleOf(const StateCovariance& covariance) {
+  std::array<float, 21> triangle;
+  std::size_t at = 0;
+  for (int i = 0; i < 6; ++i)
+    for (int j = i; j < 6; ++j) triangle[at++] = static_cast<float>(covariance(i, j));
+  return triangle;
+}
+
+}  // namespace
+
+PoseCovariance covarianceOf(const OdometryPose& pose) {
+  PoseCovariance covariance;
+  std::size_t at = 0;
+  for (int i = 0; i < 6; ++i)
+    for (int j = i; j < 6; ++j) covariance(i, j) = covariance(j, i) = static_cast<double>(pose.covariance[at++]);
+  return covariance;
+}
+
 EstimationStage::EstimationStage(const Rig& rig, const Configuration& configuration, OdometryResult& result)
     : rig_(rig),
       configuration_(configuration),
@@ -44,8 +65,10 @@ WindowUpdate EstimationStage::process(const TrackedFrame& frame) {
 
 void EstimationStage::addPoses(const WindowUpdate& update) {
   std::vector<OdometryPose>& trajectory = result_.trajectory;
-  for (const auto& [t_ns, T_w_b] : update.replaced) trajectory.push_back({t_ns, T_w_b});
-  if (update.hasPose()) trajectory.push_back({update.t_ns, update.T_w_b});
+  for (std::size_t i = 0; i < update.replaced.size(); ++i)
+    trajectory.push_back(
+        {update.replaced[i].first, update.replaced[i].second, triangleOf(update.replaced_covariances.at(i))});
+  if (update.hasPose()) trajectory.push_back({update.t_ns, update.T_w_b, triangleOf(update.covariance)});
   if (update.startWasWrong()) return withdrawStart();
   if (update.status != EstimatorStatus::kLost) return;
   settled_poses_ = trajectory.size();

@@ -21,6 +21,7 @@ std::vector<std::string> writeResults(const OdometryResult& result, const std::s
   fs::create_directories(out, error);
   if (error) throw std::runtime_error(folder + ": cannot be made: " + error.message() + "; choose another folder");
   AtomicFile::writeWhole((out / "trajectory.tum").string(), trajectoryText(result.trajectory));
+  AtomicFile::writeWhole((out / "trajectory_covariance.csv").string(), covarianceText(result.trajectory));
   fs::remove(out / "trajectory_refined.tum", error);  // what an earlier run left must not be taken for this run's
   if (result.refinement.accepted)
     AtomicFile::writeWhole((out / "trajectory_refined.tum").string(), trajectoryText(result.refined_trajectory));
@@ -48,6 +49,25 @@ std::string trajectoryText(const std::vector<OdometryPose>& trajectory) {
     text += line;
   }
   return text;
+}
+
+std::string covarianceText(const std::vector<OdometryPose>& trajectory) {
+  constexpr const char* kNames[] = {"x", "y", "z", "yaw", "pitch", "roll"};
+  std::string text = "# timestamp";
+  for (int i = 0; i < 6; ++i)
+    for (int j = i; j < 6; ++j) text += std::string(",") + kNames[i] + "_" + kNames[j];
+  char number[64];
+  for (const OdometryPose& pose : trajectory) {
+    std::snprintf(number, sizeof number, "\n%" PRId64 ".%09" PRId64, pose.t_ns / 1000000000, pose.t_ns % 1000000000);
+    text += number;
+    const PoseCovariance covariance = toEulerCovariance(covarianceOf(pose), pose.T_w_b.q);
+    for (int i = 0; i < 6; ++i)
+      for (int j = i; j < 6; ++j) {
+        std::snprintf(number, sizeof number, ",%.9e", covariance(i, j));
+        text += number;
+      }
+  }
+  return text + "\n";
 }
 
 }  // namespace lintel

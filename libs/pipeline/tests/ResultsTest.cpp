@@ -43,6 +43,20 @@ TEST(TrajectoryText, IsTumWithNineDecimals) {
 
 TEST(TrajectoryText, NoPosesAreAHeader) { EXPECT_EQ(trajectoryText({}), "# timestamp tx ty tz qx qy qz qw\n"); }
 
+TEST(CovarianceText, IsARowOfTheUpperTriangleForEachPose) {
+  OdometryPose pose{1'000'000'007, Pose(), {}};
+  for (std::size_t k = 0; k < pose.covariance.size(); ++k) pose.covariance[k] = static_cast<float>(k + 1);
+  const std::string text = covarianceText({pose});
+  EXPECT_EQ(text.find("# timestamp,x_x,x_y,x_z,x_yaw,x_pitch,x_roll,y_y,"), 0u) << text;
+  // upright: yaw turns about z, the last of the tangent's axes, and roll about x
+  EXPECT_NE(text.find("\n1.000000007,1.000000000e+00,2.000000000e+00,3.000000000e+00,6.000000000e+00,5.000000000e+00,"
+                      "4.000000000e+00,7.000000000e+00,"),
+            std::string::npos)
+      << text;
+  EXPECT_EQ(text.back(), '\n');
+  EXPECT_EQ(covarianceText({}).find('\n'), covarianceText({}).size() - 1) << "no poses are a header";
+}
+
 TEST(WriteResults, WritesEveryFileIntoAFolderThatItMakes) {
   const test::TempFolder work;
   const std::string out = work / "deep/out";
@@ -50,6 +64,7 @@ TEST(WriteResults, WritesEveryFileIntoAFolderThatItMakes) {
   const auto exported = writeResults(result, out, {"csv", "obj"});
   EXPECT_EQ(exported, (std::vector<std::string>{out + "/map.csv", out + "/map.obj"}));
   EXPECT_EQ(bytesOf(out + "/trajectory.tum"), trajectoryText(result.trajectory));
+  EXPECT_EQ(bytesOf(out + "/trajectory_covariance.csv"), covarianceText(result.trajectory));
   EXPECT_EQ(bytesOf(out + "/trajectory_refined.tum"), trajectoryText(result.refined_trajectory));
   EXPECT_EQ(bytesOf(out + "/config.yaml"), result.map.configuration);
   const LineMap map = readMap(out + "/map.lintel");

@@ -64,7 +64,8 @@ class LintelEval {
     if (!trajectory_.empty()) evaluateTrajectoryFile();
     if (!map_.empty()) evaluateMap();
     if (!json_.empty())
-      AtomicFile::writeWhole(json_, toJson(evaluation_.trajectory, evaluation_.map_trajectory, evaluation_.lines));
+      AtomicFile::writeWhole(json_, toJson(evaluation_.trajectory, evaluation_.map_trajectory, evaluation_.lines,
+                                           evaluation_.consistency));
     if (!report_.empty()) AtomicFile::writeWhole(report_, evaluationPage(evaluation_));
     return 0;
   }
@@ -78,6 +79,11 @@ class LintelEval {
                 "map the default is the one beside the lines "
                 "(../state_groundtruth_estimate0/data.csv)")
         .type("GT");
+    line_
+        .option("--covariance", covariance_,
+                "Covariances of the estimate, as lintel-vio writes them; the default is the file beside it "
+                "(NAME_covariance.csv for NAME.tum)")
+        .type("FILE.csv");
     line_.option("--map", map_, "Line map of lintel-vio").type("MAP.lintel");
     line_.option("--lines", lines_, "True lines, as in mav0/lines0/data.csv").type("GT.csv");
     line_.option("--align", alignment_, "How the estimate is laid onto the truth: se3, yaw, sim3 or none")
@@ -107,6 +113,7 @@ class LintelEval {
     if (trajectory_.empty() && map_.empty())
       throw UsageError("nothing to do: give --trajectory EST --groundtruth GT, or --map MAP.lintel --lines GT.csv");
     if (!trajectory_.empty() && groundtruth_.empty()) throw UsageError("--trajectory needs --groundtruth GT");
+    if (!covariance_.empty() && trajectory_.empty()) throw UsageError("--covariance needs --trajectory EST");
     if (map_.empty() != lines_.empty()) throw UsageError("--map and --lines need each other");
     if (!between_.empty()) readBetween();
   }
@@ -136,6 +143,19 @@ class LintelEval {
     evaluation_.estimate = readTrajectory(trajectory_);
     evaluation_.trajectory = errorsOf(trajectory_, evaluation_.estimate, groundtruth_);
     if (!quiet_) printText(*evaluation_.trajectory, out_);
+    evaluateCovariances();
+  }
+
+  void evaluateCovariances() {
+    std::string file = covariance_;
+    if (file.empty()) {
+      file =
+          (fs::path(trajectory_).parent_path() / (fs::path(trajectory_).stem().string() + "_covariance.csv")).string();
+      if (!fs::exists(file)) return;
+    }
+    const auto covariances = readCovariances(file, evaluation_.estimate);
+    evaluation_.consistency = evaluateConsistency(evaluation_.estimate, covariances, evaluation_.groundtruth, params_);
+    if (!quiet_) printText(*evaluation_.consistency, out_);
   }
 
   /// A file of the recording that the true lines belong to; empty if there is none.
@@ -178,7 +198,8 @@ class LintelEval {
   std::ostream& err_;
   CommandLine line_{kName,
                     "Errors of a trajectory against its ground truth, and of a line map against the true lines."};
-  std::string trajectory_, groundtruth_, map_, lines_, alignment_ = "se3", json_, report_, surfaces_, between_;
+  std::string trajectory_, covariance_, groundtruth_, map_, lines_, alignment_ = "se3", json_, report_, surfaces_,
+                                                                    between_;
   bool quiet_ = false;
   TrajectoryErrorParams params_;
   Evaluation evaluation_;

@@ -319,7 +319,7 @@ class LintelVio {
            << " more lines run beside better seen ones and were left out (map.spacing.min_m, 0 keeps them)\n";
     if (!result.refinement.verdict.empty()) out_ << result.refinement.verdict << "\n";
     const fs::path folder(output_);
-    out_ << "written: " << (folder / "trajectory.tum").string()
+    out_ << "written: " << (folder / "trajectory.tum").string() << ", trajectory_covariance.csv"
          << (result.refinement.accepted ? ", trajectory_refined.tum" : "")
          << ", map.lintel, stats.json, config.yaml, report.html\n";
     for (const std::string& file : exported_) {

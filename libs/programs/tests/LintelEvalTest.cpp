@@ -74,6 +74,35 @@ TEST_F(LintelEvalProgram, EvaluatesATrajectory) {
   EXPECT_FALSE(json.contains("lines"));
 }
 
+TEST_F(LintelEvalProgram, CovariancesBesideTheTrajectoryGiveNees) {
+  const std::string truth = write("gt.tum", "0 0 0 0 0 0 0 1\n1 1 0 0 0 0 0 1\n2 2 0 0 0 0 0 1\n3 3 0 0 0 0 0 1\n");
+  const std::string estimate =
+      write("est.tum", "0 0 0 0 0 0 0 1\n1 1 0.2 0 0 0 0 1\n2 2 0 0.3 0 0 0 1\n3 3 0 0 0 0 0 1\n");
+  std::string rows = "# timestamp\n";
+  for (int i = 0; i < 4; ++i) {
+    rows += std::to_string(i);
+    for (int a = 0; a < 6; ++a)
+      for (int b = a; b < 6; ++b) rows += a != b || (i == 0 && a < 3) ? ",0" : ",0.01";
+    rows += "\n";
+  }
+  write("est_covariance.csv", rows);
+  const std::vector<std::string> arguments{"--trajectory", estimate,         "--groundtruth", truth,
+                                           "--json",       path("out.json"), "--report",      path("out.html")};
+  ASSERT_EQ(run(arguments), 0) << err_.str();
+  EXPECT_THAT(out_.str(), HasSubstr("NEES"));
+  const auto json = read(path("out.json"));
+  EXPECT_EQ(json["consistency"]["poses"], 3);
+  EXPECT_NEAR(json["consistency"]["nees_position"]["mean"].get<double>(), (4.0 + 9.0) / 3, 1e-9);
+  EXPECT_NEAR(json["consistency"]["nees_yaw"]["mean"].get<double>(), 0, 1e-9);
+  std::stringstream page;
+  page << std::ifstream(path("out.html")).rdbuf();
+  EXPECT_THAT(page.str(), HasSubstr("three standard deviations"));
+  write("other.csv", "7,1\n");
+  EXPECT_EQ(run({"--trajectory", estimate, "--groundtruth", truth, "--covariance", path("other.csv")}), 1);
+  EXPECT_THAT(err_.str(), HasSubstr("other.csv:1"));
+  EXPECT_EQ(run({"--map", "m", "--lines", "l", "--covariance", path("other.csv")}), 2);
+}
+
 TEST_F(LintelEvalProgram, AlignsTheMapByItsOwnTrajectory) {
   writeRecordingAndMap();
   ASSERT_EQ(run({"--map", path("map.lintel"), "--lines", path("mav0/lines0/data.csv"), "--json", path("out.json")}), 0)

@@ -21,19 +21,22 @@ Eigen::MatrixXd pseudoInverse(const Eigen::MatrixXd& m) {
   return eigen.vectors * inverse.asDiagonal() * eigen.vectors.transpose();
 }
 
-/// H and b without rows [at, at + size), their information passed on to the others.
-void eliminate(NormalEquations& eq, Eigen::Index at, Eigen::Index size) {
-  const Eigen::Index rest = eq.H.rows() - at - size;
+/// H and b without the first `size` rows, their information passed on to the others; the same with a function K dx of
+/// the states: what of it the others know.
+void eliminate(NormalEquations& eq, WorldDrift::Rows& K, Eigen::Index size) {
+  const Eigen::Index rest = eq.H.rows() - size;
   if (size == 0 || rest == 0) return;
-  const auto Hbm = eq.H.block(at + size, at, rest, size);
-  const Eigen::MatrixXd gain = Hbm * pseudoInverse(eq.H.block(at, at, size, size));
-  eq.b.tail(rest) -= gain * eq.b.segment(at, size);
+  const auto Hbm = eq.H.block(size, 0, rest, size);
+  const Eigen::MatrixXd gain = Hbm * pseudoInverse(eq.H.topLeftCorner(size, size));
+  eq.b.tail(rest) -= gain * eq.b.head(size);
   eq.H.bottomRightCorner(rest, rest) -= gain * Hbm.transpose();
+  K.rightCols(rest) -= K.leftCols(size) * gain.transpose();
 }
 
 /// Points slide: x' = x + noise of this variance, independent for each coordinate. x' takes the place of x in the
 /// equations. `rows`: of all points.
-void slide(Eigen::MatrixXd& H, Eigen::VectorXd& b, const std::vector<Eigen::Index>& rows, double variance) {
+void slide(Eigen::MatrixXd& H, Eigen::VectorXd& b, WorldDrift::Rows& K, const std::vector<Eigen::Index>& rows,
+           double variance) {
   if (rows.empty()) return;
   const double w = 1 / variance;
   const Eigen::MatrixXd H_x = H(Eigen::all, rows);
@@ -43,12 +46,15 @@ void slide(Eigen::MatrixXd& H, Eigen::VectorXd& b, const std::vector<Eigen::Inde
   const Eigen::MatrixXd half = llt.matrixL().solve(H_x.transpose());  // half' half = H_x (H_xx + W)^-1 H_x'
   const Eigen::MatrixXd crossed = w * llt.matrixU().solve(half).transpose();
   const Eigen::VectorXd moved = llt.solve(Eigen::VectorXd(b(rows)));
+  const Eigen::MatrixXd moved_K = llt.solve(K(Eigen::all, rows).transpose());  // n x 4
   H.selfadjointView<Eigen::Lower>().rankUpdate(half.transpose(), -1);
   H.triangularView<Eigen::StrictlyUpper>() = H.transpose();
   b -= H_x * moved;
+  K -= (H_x * moved_K).transpose();
   H(Eigen::all, rows) = crossed;
   H(rows, Eigen::all) = crossed.transpose();
   b(rows) = w * moved;
+  K(Eigen::all, rows) = w * moved_K.transpose();
 }
 
 GaugeAction actionOf(const BlockKey& key) {
@@ -56,6 +62,18 @@ GaugeAction actionOf(const BlockKey& key) {
 
   if (key.kind == BlockKey::kPose) return GaugeAction::kPose;
   return key.kind == BlockKey::kMotion ? GaugeAction::kMotion : GaugeAction::kNone;
+}
+
+/// What the drift has in the columns of these equations.
+WorldDrift::Rows takeColumns(WorldDrift& drift, const NormalEquations& eq) {
+  WorldDrift::Rows K = WorldDrift::Rows::Zero(4, eq.H.cols());
+  for (std::size_t i = 0; i < eq.blocks.size(); ++i) {
+    const auto found = drift.by_state.find(eq.blocks[i]);
+    if (found == drift.by_state.end()) continue;
+    K.middleCols(eq.offsets[i], found->second.cols()) = found->second;
+    drift.by_state.erase(found);
+  }
+  return K;
 }
 
 PriorBlock priorBlockOf(SlidingWindow& window, const BlockKey& key, bool absolute) {
@@ -88,19 +106,23 @@ std::optional<WindowPrior> marginalise(SlidingWindow& window, const std::vector<
   std::size_t kept = 0;
   while (kept < eq.blocks.size() && first.count(eq.blocks[kept]) > 0) ++kept;
   const Eigen::Index start = eq.offsets[kept], size = eq.H.rows() - start;
+  WorldDrift::Rows K = takeColumns(window.drift, eq);
   if (size == 0) return std::nullopt;
-  eliminate(eq, 0, start);
+  eliminate(eq, K, start);
   const bool absolute = std::any_of(factors.begin(), factors.end(), isAbsolute);
   std::vector<PriorBlock> blocks;
   Eigen::MatrixXd H = eq.H.bottomRightCorner(size, size).selfadjointView<Eigen::Lower>();
   Eigen::VectorXd b = eq.b.tail(size);
+  K = K.rightCols(size).eval();
   std::vector<Eigen::Index> point_rows;
   for (std::size_t i = kept; i < eq.blocks.size(); ++i) {
     blocks.push_back(priorBlockOf(window, eq.blocks[i], absolute));
     if (eq.blocks[i].kind != BlockKey::kPoint) continue;
     for (Eigen::Index row = eq.offsets[i]; row < eq.offsets[i + 1]; ++row) point_rows.push_back(row - start);
   }
-  if (staying.walk_rad > 0) slide(H, b, point_rows, staying.walk_rad * staying.walk_rad);
+  if (staying.walk_rad > 0) slide(H, b, K, point_rows, staying.walk_rad * staying.walk_rad);
+  for (std::size_t i = kept; i < eq.blocks.size(); ++i)
+    window.drift.by_state[eq.blocks[i]] = K.middleCols(eq.offsets[i] - start, eq.offsets[i + 1] - eq.offsets[i]);
   LinearResidual root = informationRoot(H, b);
   WindowPrior prior;
   prior.blocks = {eq.blocks.begin() + static_cast<std::ptrdiff_t>(kept), eq.blocks.end()};

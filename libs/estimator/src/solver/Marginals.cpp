@@ -28,6 +28,10 @@ Eigen::VectorXd Marginals::sigmas(const BlockKey& key) const {
   return half.colwise().norm();
 }
 
+Eigen::MatrixXd Marginals::halves(const Eigen::MatrixXd& F_transposed) const {
+  return L_.triangularView<Eigen::Lower>().solve(F_transposed);
+}
+
 double Marginals::variance(const Eigen::VectorXd& direction) const {
   return L_.triangularView<Eigen::Lower>().solve(direction).squaredNorm();
 }

@@ -27,6 +27,9 @@ class Marginals {
   /// The variance of direction' dx.
   double variance(const Eigen::VectorXd& direction) const;
 
+  /// L^-1 F': the covariance of F dx and G dx is halves(F')' halves(G').
+  Eigen::MatrixXd halves(const Eigen::MatrixXd& F_transposed) const;
+
  private:
   std::vector<BlockKey> blocks_;
   std::vector<Eigen::Index> offsets_;

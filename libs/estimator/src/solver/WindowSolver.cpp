@@ -53,6 +53,7 @@ SolveSummary solveWindow(SlidingWindow& window, const std::vector<Factor>& facto
     if (summary.iterations < limits.max_iterations) system.linearise();
   }
   summary.final_cost = cost;
+  if (limits.information) summary.information = system.eliminate();
   return summary;
 }
 

@@ -4,18 +4,21 @@
 #include "lintel/estimator/EstimatorParams.h"
 #include "lintel/estimator/SlidingWindow.h"
 #include "solver/Factor.h"
+#include "solver/ReducedSystem.h"
 
 namespace lintel {
 
 struct SolveSummary {
   int iterations = 0;
   double initial_cost = 0, final_cost = 0;
+  NormalEquations information;  ///< of the states, at the last linearisation and without damping; if asked for
 };
 
 /// When a solve has had enough.
 struct SolveLimits {
   int max_iterations = 8;
   double min_move = 0;  ///< of the states by a step, see ReducedSystem::statesMove; landmarks may still be on their way
+  bool information = false;  ///< whether SolveSummary::information is wanted
 };
 
 /// Minimises the given residuals over all blocks of the window they touch: Levenberg-Marquardt on ReducedSystem. One

@@ -16,6 +16,14 @@ NormalEquations informationOf(SlidingWindow& window, const EstimatorParams& para
   return system.eliminate();
 }
 
+Eigen::Matrix<double, 14, 14> jointCovariance(const Marginals& marginals) {
+  Eigen::MatrixXd F = Eigen::MatrixXd::Zero(marginals.size(), kPoseTangent + kCorrectionSize);
+  F.block<kPoseTangent, kPoseTangent>(marginals.offsetOf({BlockKey::kExtrinsics, 0}), 0).setIdentity();
+  F.block<kCorrectionSize, kCorrectionSize>(marginals.offsetOf({BlockKey::kCorrection, 0}), kPoseTangent).setIdentity();
+  const Eigen::MatrixXd halves = marginals.halves(F);
+  return halves.transpose() * halves;
+}
+
 }  // namespace
 
 WindowSigma windowSigma(const SlidingWindow& window, const EstimatorParams& params, const Pose& T_b_c_calibrated) {
@@ -34,6 +42,7 @@ WindowSigma windowSigma(const SlidingWindow& window, const EstimatorParams& para
   }
   const Eigen::VectorXd correction = marginals.sigmas({BlockKey::kCorrection, 0});
   if (correction.size() != kCorrectionSize) return sigma;
+  sigma.calibration.covariance = jointCovariance(marginals);
   if (params.calibration.refine_camera) sigma.calibration.camera = correction.head<6>();
   if (params.calibration.refine_readout) sigma.calibration.readout_s = correction[kReadoutAt];
   if (params.calibration.refine_time_offset) sigma.calibration.time_offset_s = correction[kTimeOffsetAt];

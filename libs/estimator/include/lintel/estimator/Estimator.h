@@ -19,6 +19,8 @@ struct CalibrationSigma {
   Eigen::Vector3d R_b_c_rad = Eigen::Vector3d::Zero();                       ///< about the camera's axes
   Eigen::Matrix<double, 6, 1> camera = Eigen::Matrix<double, 6, 1>::Zero();  ///< fx fy cx cy [px], k1 k2
   double time_offset_s = 0, readout_s = 0;
+  /// Of all of it: T_b_c in the tangent space of a pose block, then the correction (StateBlocks.h).
+  Eigen::Matrix<double, 14, 14> covariance = Eigen::Matrix<double, 14, 14>::Zero();
 };
 
 /// Calibration as refined so far.

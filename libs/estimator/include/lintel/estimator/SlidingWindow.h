@@ -119,6 +119,16 @@ struct WindowPrior {
   std::shared_ptr<const PriorFactor> factor;
 };
 
+/// How far the window's world may have drifted since the start of the trajectory: a shift [m] and a turn about the
+/// vertical through the origin [rad] that together take a position of the estimate to where it truly is, seen from the
+/// first pose. Of this error c, the part that the window's states know about is K dx (dx: the error of the states in
+/// the tangent spaces), the rest is independent of all that is measured later (WindowCovariance.h).
+struct WorldDrift {
+  using Rows = Eigen::Matrix<double, 4, Eigen::Dynamic>;
+  std::map<BlockKey, Rows> by_state;                     ///< K, in columns of blocks
+  Eigen::Matrix4d covariance = Eigen::Matrix4d::Zero();  ///< of c, with the oldest frame's position and yaw held
+};
+
 /// The states and tracks of the sliding window; what the other classes of this room work on, without any algorithm.
 class SlidingWindow {
  public:
@@ -132,6 +142,7 @@ class SlidingWindow {
   PoseBlock extrinsics;  ///< T_b_c
   CorrectionBlock correction = CorrectionBlock::Zero();
   std::vector<WindowPrior> priors;  ///< from marginalisation and from initialisation
+  WorldDrift drift;                 ///< since the first pose
   double unrolled_s = 0;            ///< the readout by which sightings have been moved to their frames' times [s]
 
   const Camera& camera() const { return camera_; }  ///< as calibrated; `correction` is on top

@@ -10,6 +10,7 @@
 #include "lintel/estimator/SlidingWindow.h"
 #include "lintel/geometry/PluckerLine.h"
 #include "lintel/geometry/Pose.h"
+#include "lintel/inertial/Propagation.h"
 
 namespace lintel {
 
@@ -67,10 +68,13 @@ struct WindowUpdate {
   Pose T_w_b;
   Eigen::Vector3d v_w_b = Eigen::Vector3d::Zero();
   ImuBias bias;
+  /// With a pose: of its error relative to the first pose of the start (WindowCovariance.h).
+  StateCovariance covariance = StateCovariance::Zero();
   std::optional<ImuBias> bias_sigma;  ///< standard deviations, about once a second
   Failure failure = Failure::kNone;   ///< with kLost
   /// With the first pose of a start that replaces a wrong one: (t_ns, T_w_b) of frames before, since the wrong start.
   std::vector<std::pair<std::int64_t, Pose>> replaced;
+  std::vector<StateCovariance> replaced_covariances;  ///< of these
   std::vector<RetiredKeyframe> keyframes;
   std::vector<RetiredPoint> points;
   std::vector<RetiredLine> lines;

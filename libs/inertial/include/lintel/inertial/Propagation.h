@@ -19,6 +19,15 @@ struct InertialState {
 /// [Forster2017, eq. 26]; the biases stay.
 InertialState propagated(const InertialState& from, const Preintegration& imu);
 
+/// Covariance of a state's error: position [m] (world axes), rotation [rad] (R <- R Exp(dtheta)), velocity [m/s], gyro
+/// bias [rad/s], accelerometer bias [m/s^2]; three numbers each.
+using StateCovariance = Eigen::Matrix<double, 15, 15>;
+
+/// The covariance of propagated(from, imu) when `from` has this one: the error is carried along to first order, the
+/// noise of the samples and the walk of the biases are added.
+StateCovariance propagatedCovariance(const InertialState& from, const Preintegration& imu,
+                                     const StateCovariance& covariance);
+
 /// How far a state is from where the samples lead to from another one, in pose and velocity, measured by the covariance
 /// of the interval: a chi-square with nine degrees of freedom where both states are right.
 double squaredMisfit(const InertialState& from, const InertialState& to, const Preintegration& imu);

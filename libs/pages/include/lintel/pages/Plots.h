@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "lintel/evaluation/Consistency.h"
 #include "lintel/evaluation/TrajectoryErrors.h"
 #include "lintel/evaluation/TrueLines.h"
 #include "lintel/mapping/LineMap.h"
@@ -30,6 +31,9 @@ Figure heightOverTime(const std::vector<NamedTrajectory>& trajectories, std::int
 /// (name, errors over time)
 using NamedErrors = std::vector<std::pair<std::string, TrajectoryErrors>>;
 Figure errorOverTime(const NamedErrors& errors);
+
+/// Position error along an axis of the estimate's world over time, with a band of three standard deviations.
+Figure errorWithSigma(const Consistency& consistency, int axis);
 
 /// Box plots over the length of the stretches: translation error in percent of it.
 Figure relativeErrorBoxes(const NamedErrors& errors);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <array>
 #include <functional>
 #include <map>
 #include <string>
@@ -8,6 +9,7 @@
 
 #include "lintel/densification/Densifier.h"
 #include "lintel/estimator/Estimator.h"
+#include "lintel/geometry/EulerAngles.h"
 #include "lintel/mapping/BatchRefinement.h"
 #include "lintel/mapping/LineMap.h"
 #include "lintel/pipeline/Configuration.h"
@@ -22,7 +24,12 @@ namespace lintel {
 struct OdometryPose {
   std::int64_t t_ns = 0;
   Pose T_w_b;
+  /// Upper triangle by rows of the covariance of its error in (p, theta) (EulerAngles.h), relative to the first pose
+  /// since the start before; zero where it is not known.
+  std::array<float, 21> covariance{};
 };
+
+PoseCovariance covarianceOf(const OdometryPose& pose);
 
 /// A stretch of a recording, in seconds after its first frame.
 struct Stretch {
