@@ -5,6 +5,7 @@
 #include <array>
 #include <cmath>
 #include <map>
+#include <set>
 
 #include "GroupNames.h"
 #include "lintel/core/Quantiles.h"
@@ -102,7 +103,11 @@ void addKeyframes(Drawing& drawing) {
 void addTrajectory(Drawing& drawing) {
   DrawnPart part{"Trajectory", MapLayer::kTrajectory, -1, {}, {}};
   const Eigen::Vector3d* previous = nullptr;
+  std::set<std::uint64_t> begins;  // of pieces: nothing is known of the way to there
+  for (const MapPiece& piece : drawing.map->pieces) begins.insert(piece.first_pose);
+  std::uint64_t at = 0;
   for (const auto& [t_ns, T_w_b] : drawing.map->trajectory) {
+    if (begins.count(at++) > 0) previous = nullptr;
     if (!drawable(T_w_b.p)) {
       ++drawing.summary.dropped;
       continue;

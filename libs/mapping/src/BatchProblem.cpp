@@ -152,10 +152,16 @@ void BatchProblem::addPriors() {
     if (!isAnchor(k)) continue;
     if (keyframe.at_rest) add(makeRestPrior(estimator_.rest_velocity_sigma), motionAt(k));
     if (keyframe.imu && k > 0) continue;
-    // the first of a run: its place and yaw are free to choose, its biases are known about
-    add(makeGaugePrior(toBlock(keyframe.T_w_b)), poseAt(k));
+    // the first of a piece: its biases are known about; of a world: its place and yaw are free to choose
+    if (k == 0 || beginsWorld(keyframe.id)) add(makeGaugePrior(toBlock(keyframe.T_w_b)), poseAt(k));
     add(makeBiasPrior(estimator_.initializer), motionAt(k));
   }
+}
+
+bool BatchProblem::beginsWorld(FrameId keyframe) const {
+  if (material_.pieces.empty()) return true;
+  const std::size_t piece = pieceOf(material_.pieces, keyframe);
+  return material_.pieces[piece].world == static_cast<int>(piece);
 }
 
 BatchProblem::Summary BatchProblem::solve(int max_iterations, double tolerance, const std::function<bool(int)>& goOn) {

@@ -59,6 +59,7 @@ class BatchProblem {
   double* at(std::size_t offset) { return values_.data() + offset; }
   void placeBlocks();
   void addPriors();
+  bool beginsWorld(FrameId keyframe) const;
   void addImu();
   std::size_t mostViewsOf(const PointRecord& point) const;
   void addPoints();

@@ -170,6 +170,7 @@ RefinementReport BatchRefinement::refine(MapMaterial& material, const Refinement
     report = adjust(refined, progress, joins);
     if (!report.accepted && !report.cancelled && !joins.empty()) {
       refined = material;
+      refined.pieces = separatePieces(material);  // nothing holds them to one another
       report = adjust(refined, progress, {});
       report.joins_refused = true;
     }

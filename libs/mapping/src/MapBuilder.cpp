@@ -11,7 +11,7 @@ namespace {
 
 PointRecord recordOf(const RetiredPoint& retired) {
   PointRecord point;
-  point.id = retired.id;
+  point.id = point.track = retired.id;
   point.known = retired.triangulated;
   point.p_w = retired.p_w;
   point.sigma_distance_m = retired.sigma_distance_m;
@@ -106,6 +106,7 @@ MapMaterial MapBuilder::material() const {
   keepKeyframesOnly(ids, material.lines);
   orderById(material.points);
   orderById(material.lines);
+  material.pieces = separatePieces(material);
   return material;
 }
 

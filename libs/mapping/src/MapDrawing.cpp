@@ -74,8 +74,10 @@ LineMap drawMap(const MapParams& params, const MapMaterial& material) {
   LineMap map;
   map.rig = material.rig;
   map.trajectory = material.trajectory;
+  map.time_offset_s = material.time_offset_s;
+  map.pieces = material.pieces;
   for (const RetiredKeyframe& k : material.keyframes)
-    map.keyframes.push_back({k.id, k.t_ns, k.T_w_b, k.v_w_b, k.bias.gyro, k.bias.accel});
+    map.keyframes.push_back({k.id, k.t_ns, k.T_w_b, k.v_w_b, k.bias.gyro, k.bias.accel, k.imu, k.at_rest});
   const MapDrawer drawer(params, material);
   for (const PointRecord& record : material.points)
     if (auto point = drawer.draw(record)) map.points.push_back(std::move(*point));

@@ -155,6 +155,9 @@ const MapSection kMapSections[kMapSectionCount] = {{"RIG_", encodeRig, decodeRig
                                                    {"PNTS", encodePoints, decodePoints},
                                                    {"LINE", encodeLines, decodeLines},
                                                    {"TRAJ", encodeTrajectory, decodeTrajectory},
-                                                   {"GRPS", encodeGroups, decodeGroups}};
+                                                   {"GRPS", encodeGroups, decodeGroups},
+                                                   {"PIEC", encodePieces, decodePieces},
+                                                   {"IMU_", encodeImu, decodeImu},
+                                                   {"VIEW", encodeViews, decodeViews}};
 
 }  // namespace lintel

@@ -19,7 +19,15 @@ struct MapSection {
 };
 
 /// All sections in the order in which they are written.
-constexpr std::size_t kMapSectionCount = 9;
+constexpr std::size_t kMapSectionCount = 12;
 extern const MapSection kMapSections[kMapSectionCount];
+
+// what merging needs, MergingSections.cpp
+void encodePieces(const LineMap& map, ByteWriter& out);
+void decodePieces(ByteReader& in, LineMap& map);
+void encodeImu(const LineMap& map, ByteWriter& out);
+void decodeImu(ByteReader& in, LineMap& map);
+void encodeViews(const LineMap& map, ByteWriter& out);
+void decodeViews(ByteReader& in, LineMap& map);
 
 }  // namespace lintel

@@ -13,16 +13,19 @@ constexpr float kViewSigma_px = 0.3f;  // of edges that were followed; a map doe
 MapMaterial materialOf(const MapParams& params, const LineMap& map) {
   MapMaterial material;
   material.rig = map.rig;
+  material.time_offset_s = map.time_offset_s;
   material.trajectory = map.trajectory;
+  material.pieces = map.pieces;
   for (const MapKeyframe& keyframe : map.keyframes) {
     RetiredKeyframe k;
     k.id = keyframe.id, k.t_ns = keyframe.t_ns, k.T_w_b = keyframe.T_w_b, k.v_w_b = keyframe.v_w_b;
     k.bias = {keyframe.bias_gyro, keyframe.bias_accel};
+    k.imu = keyframe.imu, k.at_rest = keyframe.at_rest;
     material.keyframes.push_back(k);
   }
   for (const MapPoint& point : map.points) {
     PointRecord record;
-    record.id = point.id, record.known = true;
+    record.id = record.track = point.id, record.known = true;
     record.p_w = point.p_w, record.sigma_distance_m = point.sigma_distance_m;
     for (const MapPointObservation& seen : point.observations)
       record.views.push_back({seen.keyframe_id, seen.px, true});

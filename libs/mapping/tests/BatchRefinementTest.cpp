@@ -348,5 +348,23 @@ TEST_F(BatchRefinementTest, TooLittleToRefineSaysSo) {
   EXPECT_NE(report.verdict.find("keyframes"), std::string::npos);
 }
 
+/// The IMU has a gap in the middle; what comes after was brought to the same frame, some centimetres off.
+TEST_F(BatchRefinementTest, PiecesOfOneWorldAreHeldByTheirPointsAlone) {
+  const std::vector<PointJoin> joins = splitTracks();
+  const FrameId second = 5 * ((flight_.frames.size() / 2 + 9) / 5);
+  for (RetiredKeyframe& keyframe : material_.keyframes)
+    if (keyframe.id == second) keyframe.imu.reset();
+  material_.pieces = separatePieces(material_);
+  ASSERT_EQ(material_.pieces.size(), 2u);
+  const MapMaterial truth_like = material_;
+  movePiece(1, {expRotation({0, 0, 0.01}), {0.06, -0.05, 0.03}}, material_);
+  MapMaterial joined = material_, separate = material_;
+  joined.pieces[1].world = 0;
+  EXPECT_TRUE(refine(joined, joins).accepted);
+  EXPECT_LT(error(joined), 0.012);
+  refine(separate);
+  EXPECT_GT(error(separate), 0.02) << "each keeps its own frame";
+}
+
 }  // namespace
 }  // namespace lintel

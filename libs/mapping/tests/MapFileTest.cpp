@@ -11,6 +11,7 @@
 #include <limits>
 #include <random>
 
+#include "lintel/inertial/Preintegration.h"
 #include "lintel/testing/TempFolder.h"
 
 namespace lintel {
@@ -56,6 +57,14 @@ LineMap sampleMap() {
   map.lines[4].id = ~std::uint64_t{0};
   map.groups = {{"vertical", {0, 0, 1}, 0.01}, {"", vec(), -1}};
   for (int i = 0; i < 30; ++i) map.trajectory.emplace_back(1403636579763555584 + i, pose());
+  map.time_offset_s = -0.0031;
+  map.recordings = {"MH_01_easy", ""};
+  map.pieces = {{0, 5, 8, 0, 0, 0}, {9, 1403636579763555584, 1403636579763555588, 20, 0, 1}};
+  auto imu = std::make_shared<Preintegration>(ImuBias{vec(), vec()}, ImuNoise{1e-3, 1e-4, 1e-5, 1e-6});
+  imu->append({{5, vec(), vec()}, {1000005, vec(), vec(), true}, {2000005, vec(), vec()}});
+  map.keyframes[1].imu = imu;
+  map.keyframes[1].at_rest = true;
+  map.views.push_back({1, {17, {{{1.5F, 2.25F}, -1, 0, {1, 2, 3, ~std::uint64_t{0}}}, {{0, 0}, 7, 2, {}}}}});
   return map;
 }
 
@@ -109,6 +118,23 @@ TEST_F(MapFile, EveryValueReturnsToTheBit) {
   EXPECT_EQ(back.groups[1].direction_w, map.groups[1].direction_w);
   EXPECT_EQ(back.groups[1].spread_rad, -1);
   EXPECT_EQ(back.trajectory[29].second.p, map.trajectory[29].second.p);
+  EXPECT_EQ(back.time_offset_s, -0.0031);
+  EXPECT_EQ(back.recordings, map.recordings);
+  ASSERT_EQ(back.pieces.size(), 2u);
+  EXPECT_EQ(back.pieces[1].first_keyframe, 9u);
+  EXPECT_EQ(back.pieces[1].last_ns, 1403636579763555588);
+  EXPECT_EQ(back.pieces[1].first_pose, 20u);
+  EXPECT_EQ(back.pieces[1].recording, 1);
+  EXPECT_FALSE(back.keyframes[0].imu);
+  ASSERT_TRUE(back.keyframes[1].imu);
+  EXPECT_TRUE(back.keyframes[1].at_rest);
+  EXPECT_EQ(back.keyframes[1].imu->deltaP(), map.keyframes[1].imu->deltaP());
+  EXPECT_TRUE(back.keyframes[1].imu->samples()[1].bridged);
+  ASSERT_EQ(back.views.size(), 1u);
+  EXPECT_EQ(back.views[0].looks.t_ns, 17);
+  EXPECT_EQ(back.views[0].looks.features[0].px, Eigen::Vector2f(1.5F, 2.25F));
+  EXPECT_EQ(back.views[0].looks.features[0].descriptor[3], ~std::uint64_t{0});
+  EXPECT_EQ(back.views[0].looks.features[1].track, 7);
   // All the rest: the map read back makes the same bytes.
   writeMap(back, path_ + "2");
   EXPECT_EQ(bytesOf(path_), bytesOf(path_ + "2"));

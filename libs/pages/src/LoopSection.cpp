@@ -27,11 +27,38 @@ struct Visit {
   }
 };
 
+/// Where the estimate was interrupted: which stretches are in one frame.
+void pieces(HtmlPage& page, const OdometryResult& result) {
+  const std::vector<MapPiece>& all = result.map.pieces;
+  if (all.size() < 2) return;
+  const auto seconds = [&](std::int64_t t_ns) {
+    return fixedText(1e-9 * static_cast<double>(t_ns - result.statistics.first_frame_ns), 1);
+  };
+  Table table{"pieces", "Pieces between interruptions", {"piece", "from [s]", "to [s]", "in the frame of"}, {}, {}};
+  std::vector<std::string> apart;
+  for (std::size_t p = 0; p < all.size(); ++p) {
+    const std::string name = std::to_string(p + 1);
+    const bool joined = all[p].world != static_cast<int>(p);
+    table.rows.push_back({name, seconds(all[p].first_ns), seconds(all[p].last_ns),
+                          joined   ? "piece " + std::to_string(all[p].world + 1)
+                          : p == 0 ? "-"
+                                   : "its own"});
+    if (p > 0 && !joined) apart.push_back(name);
+  }
+  page.table(table);
+  std::string names;
+  for (const std::string& name : apart) names += (names.empty() ? "" : ", ") + name;
+  if (!apart.empty())
+    page.warnings({"No place of piece " + names +
+                   " was found in those before: where it lies against them is not known, " +
+                   "it begins where the estimate had ended."});
+}
+
 std::vector<Visit> visitsOf(const LoopResult& loops) {
   std::vector<Visit> visits;
   std::size_t accepted = 0;
   for (const PlacePair& pair : loops.places.pairs) {
-    if (!pair.refusal.empty()) continue;
+    if (!pair.refusal.empty() || pair.joinsRuns()) continue;
     auto visit = std::find_if(visits.begin(), visits.end(), [&](const Visit& v) { return v.continues(pair); });
     if (visit == visits.end())
       visit = visits.insert(visits.end(), {pair.earlier_ns, pair.earlier_ns, pair.later_ns, pair.later_ns});
@@ -108,6 +135,7 @@ void refusals(HtmlPage& page, const LoopResult& loops) {
 
 void loopSection(HtmlPage& page, const OdometryResult& result) {
   const LoopResult& loops = result.loops;
+  pieces(page, result);
   if (!loops.searched) return;
   page.heading("Places seen again");
   const std::vector<Visit> visits = visitsOf(loops);

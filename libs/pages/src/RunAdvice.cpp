@@ -58,7 +58,8 @@ class Adviser {
     std::string list;
     for (const std::string& failure : s_.failures) list += (list.empty() ? "" : "; ") + failure;
     say("The estimate was lost " + std::to_string(s_.resets) + " times and began anew (" + list +
-        "): positions before and after do not share a frame. Look at these times in the recording: darkness, blur, a "
+        "): positions before and after do not share a frame, except in the refined result where places in common "
+        "joined the pieces. Look at these times in the recording: darkness, blur, a "
         "covered lens, or missing images are the usual reasons.");
   }
 

@@ -107,8 +107,16 @@ void EstimationStage::refineMap(MapMaterial& material, const FinishOptions& opti
     result_.loops = loops_.find(material, options.loops);
   }
   const StageClock::Scope scope(result_.statistics.refinement);
+  const std::vector<RunAlignment>& alignments = result_.loops.places.alignments;
+  const MapMaterial separate = alignments.empty() ? MapMaterial{} : material;
+  alignPieces(alignments, material);
   result_.refinement = refinement_.refine(material, options.refinement, joinsOf(result_.loops));
-  if (result_.refinement.accepted) loops_.measureDrift(material, result_.loops);
+  if (result_.refinement.accepted) {
+    loops_.measureDrift(material, result_.loops);
+  } else if (!alignments.empty()) {
+    material = separate;
+    prepareMaterial(configuration_.map, material);
+  }
 }
 
 void EstimationStage::densifyMap(MapMaterial& material, const FinishOptions& options) {
@@ -137,7 +145,15 @@ void EstimationStage::finishMap(const FinishOptions& options) {
   if (edges_ && !result_.cancelled) densifyMap(material, options);
   result_.map = drawMap(configuration_.map, material);
   result_.map.configuration = writeConfiguration(configuration_);
+  keepForMerging(material);
   result_.lines_beside = spaceLines(configuration_.map, result_.map);
+}
+
+/// A place is recognised by views, and the poses of two flights are adjusted with the IMU between them.
+void EstimationStage::keepForMerging(const MapMaterial& material) {
+  result_.map.views = loops_.takeViews(result_.map, material);
+  if (result_.map.views.empty())
+    for (MapKeyframe& keyframe : result_.map.keyframes) keyframe.imu.reset();
 }
 
 /// After the first frame.

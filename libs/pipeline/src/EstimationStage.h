@@ -28,6 +28,7 @@ class EstimationStage {
 
  private:
   void finishMap(const FinishOptions& options);
+  void keepForMerging(const MapMaterial& material);
   void refineMap(MapMaterial& material, const FinishOptions& options);
   void densifyMap(MapMaterial& material, const FinishOptions& options);
   void addPoses(const WindowUpdate& update);

@@ -5,6 +5,7 @@
 #include <memory>
 #include <vector>
 
+#include "lintel/mapping/LineMap.h"
 #include "lintel/mapping/MapMaterial.h"
 #include "lintel/mapping/PointJoin.h"
 #include "lintel/pipeline/Odometry.h"
@@ -21,25 +22,32 @@ class LoopStage {
   void add(const Frame& frame, const std::vector<PointObservation>& tracked, const WindowUpdate& update);
 
   /// The places; `progress` as for findPlaces().
-  LoopResult find(const MapMaterial& material, const std::function<bool(double)>& progress) const;
+  LoopResult find(const MapMaterial& material, const std::function<bool(double)>& progress);
 
-  /// Compares what the images say of the accepted pairs with the refined trajectory.
+  /// Compares what the images say of the accepted pairs of one piece with the refined trajectory.
   void measureDrift(const MapMaterial& refined, LoopResult& loops) const;
+
+  /// What the map keeps of the descriptions, for merging: some, with the tracks of its points. The stage has none left.
+  std::vector<MapView> takeViews(const LineMap& map, const MapMaterial& material);
 
  private:
   bool isWanted(const WindowUpdate& update) const;
   void withdrawRun();
+  void nameByPieces(const MapMaterial& material);
 
   Rig rig_;
   PlaceParams params_;
   PlaceDescriber describer_;
-  std::vector<std::unique_ptr<const PlaceView>> views_;
+  std::vector<std::unique_ptr<PlaceView>> views_;
   std::vector<PlaceKeyframe> frames_;
-  int run_ = 0;  ///< of the estimator: each has a world of its own
-  bool at_rest_ = false;
+  int run_ = 0;  ///< of the estimator: each has a world of its own; after find() the piece of the material
+  bool at_rest_ = false, searched_ = false;
 };
 
 /// The tracks that were found to be of one point, for the refinement.
 std::vector<PointJoin> joinsOf(const LoopResult& loops);
+
+/// Brings the pieces of a material that have places in common into one frame.
+void alignPieces(const std::vector<RunAlignment>& alignments, MapMaterial& material);
 
 }  // namespace lintel

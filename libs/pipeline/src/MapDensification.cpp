@@ -50,8 +50,10 @@ std::size_t takePoses(const PosesInTime& poses, MapMaterial& material) {
     }
   }
   if (kept.size() < 2) throw PosesError("fewer than two keyframes of the map have a pose");
+  for (RetiredKeyframe& keyframe : kept) keyframe.imu.reset();
   material.keyframes = std::move(kept);
   material.trajectory = poses;
+  material.pieces.clear();
   forget(gone, material.points);
   forget(gone, material.lines);
   for (PointRecord& point : material.points) point.known = false;
@@ -113,6 +115,8 @@ MapDensification densifyMap(const LineMap& map, Recording& recording, const MapD
   spaceLines(params, result.map);
   result.map.configuration = map.configuration;
   result.map.source = map.source;
+  result.map.recordings = map.recordings;
+  if (options.poses.empty()) result.map.views = map.views;
   return result;
 }
 

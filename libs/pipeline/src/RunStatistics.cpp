@@ -67,6 +67,17 @@ Json blindJson(const OdometryStatistics& s) {
   return stretches;
 }
 
+/// Stretches between interruptions of the estimate; those of one world are in one frame.
+Json piecesJson(const OdometryResult& result) {
+  Json pieces = Json::array();
+  const auto seconds = [&](std::int64_t t_ns) {
+    return 1e-9 * static_cast<double>(t_ns - result.statistics.first_frame_ns);
+  };
+  for (const MapPiece& piece : result.map.pieces)
+    pieces.push_back({{"from_s", seconds(piece.first_ns)}, {"to_s", seconds(piece.last_ns)}, {"frame", piece.world}});
+  return pieces;
+}
+
 Json loopsJson(const OdometryResult& result) {
   const LoopResult& loops = result.loops;
   std::size_t accepted = 0;
@@ -174,6 +185,7 @@ std::string statisticsJson(const OdometryResult& result, const Rig& given, const
                   {"map_lines", result.map.lines.size()},
                   {"map_lines_beside", result.lines_beside},
                   {"loops", loopsJson(result)},
+                  {"pieces", piecesJson(result)},
                   {"refinement", refinementJson(result)},
                   {"densification", densificationJson(result.densification)},
                   {"calibration", calibrationJson(result, given)},

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <random>
+#include <set>
 
 namespace lintel {
 namespace {
@@ -40,8 +41,9 @@ class LoopStageTest : public testing::Test {
     return {t_ns, image};
   }
 
-  /// Points every 0.3 m on the wall; those seen on the way back are other tracks, their world is drifted.
-  LoopResult fly(LoopStage& stage, double drift_m, MapMaterial& material) {
+  /// Points every 0.3 m on the wall; those seen on the way back are other tracks, their world is drifted. The way back
+  /// is another piece when the flight was `interrupted`.
+  LoopResult fly(LoopStage& stage, double drift_m, MapMaterial& material, bool interrupted = false) {
     material.rig = rig_;
     std::map<TrackId, PointRecord> points;
     for (int i = 0; i < 240; ++i) {
@@ -64,6 +66,11 @@ class LoopStageTest : public testing::Test {
         points[id].known = true;
         points[id].p_w = p_w + Eigen::Vector3d(drift, 0, 0);
         points[id].views.push_back({static_cast<FrameId>(t_ns), px, true});
+      }
+      if (interrupted && i == 120) {
+        WindowUpdate lost;
+        lost.status = EstimatorStatus::kLost;
+        stage.add(frameAt(t_ns, x_m), {}, lost);
       }
       stage.add(frameAt(t_ns, x_m), tracked, update);
     }
@@ -109,6 +116,55 @@ TEST_F(LoopStageTest, TheWayBackIsSeenAgainAndTheDriftIsMeasured) {
   stage.measureDrift(material, loops);
   ASSERT_EQ(loops.drift_after_m.size(), loops.drift_before_m.size());
   for (const double drift_m : loops.drift_after_m) EXPECT_LT(drift_m, 0.03);
+}
+
+TEST_F(LoopStageTest, AnInterruptedFlightIsBroughtTogether) {
+  PlaceParams params;
+  params.interval_s = 0.4;
+  params.min_separation_s = 14;
+  LoopStage stage(rig_, params);
+  MapMaterial material;
+  material.pieces = {{0, 0, kTurn_ns - 1, 0, 0, 0},
+                     {static_cast<FrameId>(kTurn_ns), kTurn_ns, 2 * kTurn_ns, 120, 1, 0}};
+  const LoopResult loops = fly(stage, 1.5, material, true);
+  EXPECT_TRUE(loops.drift_before_m.empty()) << "between pieces there is none";
+  ASSERT_EQ(loops.places.alignments.size(), 1u);
+  alignPieces(loops.places.alignments, material);
+  EXPECT_EQ(material.pieces[1].world, 0);
+  for (const auto& [t_ns, T_w_b] : material.trajectory)
+    EXPECT_NEAR(T_w_b.p.x(), along(1e-9 * static_cast<double>(t_ns)), 0.03);
+  for (const PointRecord& point : material.points)
+    EXPECT_NEAR(point.p_w.x(), 0.3 * static_cast<double>(point.id % kBack % 40) - 2, 0.03);
+}
+
+TEST_F(LoopStageTest, TheMapKeepsSomeViewsWithItsPoints) {
+  PlaceParams params;
+  params.interval_s = 0.5;
+  params.keep_interval_s = 1;
+  LoopStage stage(rig_, params);
+  MapMaterial material;
+  fly(stage, 0, material);
+  LineMap map;
+  map.pieces = {{}};
+  map.points.resize(2);
+  map.points[0].id = 200;
+  map.points[1].id = 210;
+  material.points[0].joined = {211};  // of a point that is not in the map
+  for (PointRecord& point : material.points)
+    if (point.id == 210) point.joined = {212};
+  const std::vector<MapView> views = stage.takeViews(map, material);
+  EXPECT_EQ(views.size(), 24u);
+  std::set<std::int64_t> tracks;
+  for (const MapView& view : views)
+    for (const PlaceFeature& feature : view.looks.features) tracks.insert(feature.track);
+  EXPECT_EQ(tracks, (std::set<std::int64_t>{PlaceFeature::kNoTrack, 200, 210}));
+  EXPECT_TRUE(stage.takeViews(map, material).empty()) << "they are moved, not copied";
+
+  params.keep_interval_s = 0;
+  LoopStage none(rig_, params);
+  MapMaterial again;
+  fly(none, 0, again);
+  EXPECT_TRUE(none.takeViews(map, again).empty());
 }
 
 TEST_F(LoopStageTest, SwitchedOffItLooksAtNothing) {

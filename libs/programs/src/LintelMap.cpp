@@ -12,6 +12,7 @@
 
 #include "CommandLine.h"
 #include "MapDensifying.h"
+#include "MapMergingProgram.h"
 #include "ProgramMain.h"
 #include "RecordingOptions.h"
 #include "StopSignals.h"
@@ -88,7 +89,8 @@ class LintelMap {
            "  lintel-map map.lintel -o map.colmap --images images --recording flight.bag   for COLMAP\n"
            "  lintel-map map.lintel -o map.obj --layers lines,trajectory --radius 0.01\n"
            "lintel-map densify MAP.lintel INPUT -o FILE.lintel searches the images for more lines: see lintel-map "
-           "densify "
+           "densify --help\n"
+           "lintel-map merge A.lintel B.lintel -o C.lintel makes one map of several flights: see lintel-map merge "
            "--help";
   }
 
@@ -197,6 +199,7 @@ class LintelMap {
 int runLintelMap(int argc, const char* const* argv, std::ostream& out, std::ostream& err) {
   return programMain(LintelMap::kName, err, [&] {
     if (argc > 1 && std::string(argv[1]) == "densify") return densifyFromCommandLine(argc - 1, argv + 1, out, err);
+    if (argc > 1 && std::string(argv[1]) == "merge") return mergeFromCommandLine(argc - 1, argv + 1, out, err);
     return LintelMap(out, err).run(argc, argv);
   });
 }

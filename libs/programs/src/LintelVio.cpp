@@ -291,6 +291,18 @@ class LintelVio {
     return runReport(record, result, series_);
   }
 
+  void summarisePieces(const std::vector<MapPiece>& pieces) {
+    if (pieces.size() < 2) return;
+    const auto apart =
+        std::count_if(pieces.begin(), pieces.end(), [](const MapPiece& piece) { return piece.world != 0; });
+    out_ << pieces.size() << " pieces between interruptions: ";
+    if (apart == 0) {
+      out_ << "places that they have in common bring the refined ones into one frame\n";
+    } else {
+      out_ << apart << " not in the frame of the first, as no place is common for certain\n";
+    }
+  }
+
   void summarise(const OdometryResult& result, double wall_s) {
     const OdometryStatistics& s = result.statistics;
     double length = 0;
@@ -304,6 +316,7 @@ class LintelVio {
     if (s.first_pose_s > 0) out_ << ", first pose after " << s.first_pose_s << " s";
     out_ << "\n";
     for (const std::string& failure : s.failures) out_ << "started anew " << failure << "\n";
+    summarisePieces(result.map.pieces);
     for (const Stretch& blind : s.blind)
       out_ << "nothing to be seen from " << blind.from_s << " to " << blind.to_s
            << " s: the IMU alone carried the poses there\n";

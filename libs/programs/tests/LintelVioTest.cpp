@@ -458,6 +458,64 @@ TEST_F(LintelVioTest, ASearchThatCannotBeIsOneLineAndLeavesNothing) {
   EXPECT_THAT(again.err, HasSubstr("exists already"));
 }
 
+TEST_F(LintelVioTest, MapsOfOnePlaceAreMerged) {
+  ASSERT_EQ(run(recording(), "later", {"--from", "0.9"}).exit_code, 0);
+  const std::string first = out("reference") + "/map.lintel", second = out("later") + "/map.lintel";
+  const ProgramRun merged = runMap({"merge", first, second, "-o", *work_ / "both.lintel"});
+  ASSERT_EQ(merged.exit_code, 0) << merged.err;
+  EXPECT_THAT(merged.out, HasSubstr("2 recordings"));
+  const LineMap a = readMap(first), b = readMap(second), both = readMap(*work_ / "both.lintel");
+  EXPECT_EQ(both.keyframes.size(), a.keyframes.size() + b.keyframes.size());
+  EXPECT_LT(both.lines.size(), 1.4 * static_cast<double>(std::max(a.lines.size(), b.lines.size()))) << "not all twice";
+  ASSERT_EQ(both.pieces.size(), 2u);
+  EXPECT_EQ(both.pieces[1].world, 0);
+  EXPECT_EQ(both.recordings.size(), 2u);
+
+  const StampedPoses one = readTrajectory(*work_ / "both.1.tum"), two = readTrajectory(*work_ / "both.2.tum");
+  ASSERT_EQ(one.size(), a.trajectory.size());
+  ASSERT_EQ(two.size(), b.trajectory.size());
+  std::size_t together = 0;
+  for (const auto& [t_ns, T_w_b] : two)
+    for (const auto& [at_ns, other] : one) {
+      if (at_ns != t_ns) continue;
+      ++together;
+      EXPECT_LT((T_w_b.p - other.p).norm(), 0.01) << "one flight, seen twice";
+    }
+  EXPECT_GT(together, 20u);
+
+  ASSERT_EQ(runMap({"merge", first, second, "-o", *work_ / "again.lintel", "-q"}).exit_code, 0);
+  EXPECT_TRUE(bytesOf(*work_ / "both.lintel") == bytesOf(*work_ / "again.lintel"));
+}
+
+TEST_F(LintelVioTest, WhatCannotBeMergedIsOneLineAndLeavesNothing) {
+  SimulationParams elsewhere;
+  elsewhere.scene = "corridor";
+  elsewhere.duration_s = 3;
+  elsewhere.threads = 2;
+  Simulation(elsewhere).write(*work_ / "elsewhere");
+  ASSERT_EQ(run(*work_ / "elsewhere", "elsewhere").exit_code, 0);
+  ASSERT_EQ(run(recording(), "forgetful", {"--to", "2.5", "--set", "loops.keep_interval_s=0"}).exit_code, 0);
+  const std::string map = out("reference") + "/map.lintel", none = *work_ / "none.lintel";
+  const auto fails = [&](std::vector<std::string> arguments, const std::string& word, int exit_code = 1) {
+    arguments.insert(arguments.begin(), "merge");
+    const ProgramRun run = runMap(arguments);
+    EXPECT_EQ(run.exit_code, exit_code);
+    EXPECT_THAT(run.err, HasSubstr(word));
+    EXPECT_EQ(std::count(run.err.begin(), run.err.end(), '\n'), 1) << run.err;
+    EXPECT_FALSE(fs::exists(none));
+  };
+  fails({map, out("elsewhere") + "/map.lintel", "-o", none, "-q"}, "place");
+  fails({map, map, "-o", none, "-q"}, "both are the map of one run");
+  fails({map, out("forgetful") + "/map.lintel", "-o", none, "-q"}, "keeps no views");
+  fails({map, recording() + "/mav0/cam0/sensor.yaml", "-o", none, "-q"}, "sensor.yaml");
+  fails({map, *work_ / "nothing.lintel", "-o", none, "-q"}, "nothing.lintel");
+  fails({map, "-o", none}, "two maps", 2);
+  fails({map, map}, "--output", 2);
+  const ProgramRun exists = runMap({"merge", map, map, "-o", map});
+  EXPECT_EQ(exists.exit_code, 1);
+  EXPECT_THAT(exists.err, HasSubstr("exists already"));
+}
+
 TEST_F(LintelVioTest, HelpVersionAndConfigurationNeedNoInput) {
   EXPECT_THAT(runVio({"--help"}).out, HasSubstr("--dump-config"));
   EXPECT_EQ(runVio({"--version"}).exit_code, 0);

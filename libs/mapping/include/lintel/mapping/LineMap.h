@@ -3,14 +3,19 @@
 
 #include <Eigen/Core>
 #include <cstdint>
+#include <memory>
 #include <string>
 #include <vector>
 
+#include "lintel/core/PlaceView.h"
 #include "lintel/core/Rig.h"
 #include "lintel/geometry/Pose.h"
 #include "lintel/geometry/Segment.h"
+#include "lintel/mapping/MapPieces.h"
 
 namespace lintel {
+
+class Preintegration;
 
 /// A keyframe of the map.
 struct MapKeyframe {
@@ -20,6 +25,9 @@ struct MapKeyframe {
   Eigen::Vector3d v_w_b = Eigen::Vector3d::Zero();       ///< [m/s]
   Eigen::Vector3d bias_gyro = Eigen::Vector3d::Zero();   ///< [rad/s]
   Eigen::Vector3d bias_accel = Eigen::Vector3d::Zero();  ///< [m/s^2]
+  /// The IMU from the keyframe before; null for the first of a piece, and where the map does not keep it.
+  std::shared_ptr<const Preintegration> imu;
+  bool at_rest = false;
 };
 
 /// Where a keyframe saw a point.
@@ -63,16 +71,27 @@ struct MapGroup {
   double spread_rad = 0;                                   ///< RMS angle of the members, weighted by length
 };
 
-/// The product: keyframes, points and line segments in one world frame (z up).
+/// What an image looked like, to find the place again. Tracks are ids of the map's points.
+struct MapView {
+  int piece = 0;  ///< place in LineMap::pieces
+  PlaceView looks;
+};
+
+/// The product: keyframes, points and line segments in one world frame (z up); in several when it has pieces that
+/// could not be joined.
 struct LineMap {
   Rig rig;                                                ///< calibration in use at the end
+  double time_offset_s = 0;                               ///< an image with stamp t shows the world at t + offset
   std::string configuration;                              ///< effective configuration, YAML text
   std::string source;                                     ///< name of the recording
   std::vector<MapKeyframe> keyframes;                     ///< ascending id
   std::vector<MapPoint> points;                           ///< ascending id
   std::vector<MapLine> lines;                             ///< ascending id
   std::vector<MapGroup> groups;                           ///< of parallel lines, the longest in sum first
-  std::vector<std::pair<std::int64_t, Pose>> trajectory;  ///< (t_ns, T_w_b) of every frame, ascending
+  std::vector<MapPiece> pieces;                           ///< ascending first keyframe; empty: there is one
+  std::vector<std::string> recordings;                    ///< names, of a map of several; pieces say which is whose
+  std::vector<MapView> views;                             ///< ascending piece and time; none where they are not kept
+  std::vector<std::pair<std::int64_t, Pose>> trajectory;  ///< (t_ns, T_w_b) of every frame, ascending within a piece
 };
 
 }  // namespace lintel

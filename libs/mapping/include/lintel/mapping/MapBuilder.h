@@ -49,8 +49,8 @@ void prepareMaterial(const MapParams& params, MapMaterial& material);
 /// degenerate ones.
 void settleLines(const MapParams& params, MapMaterial& material);
 
-/// What a map keeps of the material that it was drawn from: keyframes without IMU, points and lines with the views that
-/// agree. Lines are fitted to them.
+/// What a map keeps of the material that it was drawn from: keyframes, points and lines with the views that agree.
+/// Lines are fitted to them.
 MapMaterial materialOf(const MapParams& params, const LineMap& map);
 
 /// The map of what has enough evidence: enough views that agree, known well enough, of some length. Ends are where they

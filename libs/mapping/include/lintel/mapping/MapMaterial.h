@@ -9,6 +9,7 @@
 
 #include "lintel/core/Rig.h"
 #include "lintel/estimator/WindowUpdate.h"
+#include "lintel/mapping/MapPieces.h"
 
 namespace lintel {
 
@@ -31,6 +32,7 @@ struct LineView {
 /// A point and all its views.
 struct PointRecord {
   TrackId id = 0;
+  TrackId track = 0;   ///< of the tracker: another one than `id` where a track outlived an interruption
   bool known = false;  ///< `p_w` is an estimate
   Eigen::Vector3d p_w = Eigen::Vector3d::Zero();
   double sigma_distance_m = 0;  ///< along the ray it was seen on
@@ -82,6 +84,7 @@ struct MapMaterial {
   Rig rig;                                 ///< calibration that the poses belong to
   double time_offset_s = 0;                ///< an image with stamp t shows the world at t + offset
   std::vector<RetiredKeyframe> keyframes;  ///< ascending id and time
+  std::vector<MapPiece> pieces;            ///< ascending; empty: the IMU leads through all keyframes, or none is known
   std::vector<PointRecord> points;
   std::vector<LineRecord> lines;
   std::vector<std::pair<std::int64_t, Pose>> trajectory;  ///< (t_ns, T_w_b) of every frame with a pose, ascending
