@@ -416,7 +416,9 @@ void Estimator::Impl::fillPose(WindowUpdate& update) {
   update.bias = biasOf(newest.motion.data());
   update.covariance = newest_covariance_;
   constexpr std::uint64_t kSigmaEvery = 10;  // a second: biases and their sigmas change slowly
-  if (poses_++ % kSigmaEvery == 0) update.bias_sigma = windowSigma(window_, params_, rig_.T_b_c).bias;
+  if (poses_++ % kSigmaEvery != 0) return;
+  const Eigen::Matrix<double, 6, 1> sigma = newest_covariance_.diagonal().tail<6>().cwiseSqrt();
+  update.bias_sigma = ImuBias{sigma.head<3>(), sigma.tail<3>()};
 }
 
 WindowUpdate Estimator::Impl::finish() {

@@ -194,6 +194,10 @@ EstimatorParams paramsOf(const ConsistencySetting& setting) {
   if (setting.plain)
     params.factors.point_loss_width = params.factors.line_loss_width = params.factors.track_freedom =
         params.calibration.loss_width = 1e6;
+  if (setting.imu_as_given)
+    for (double* scale : {&params.factors.gyro_noise_scale, &params.factors.accel_noise_scale,
+                          &params.factors.gyro_walk_scale, &params.factors.accel_walk_scale})
+      *scale = 1 + 1e-9;
   return params;
 }
 

@@ -22,6 +22,7 @@ struct ConsistencySetting {
   int points = 80, lines = 25;         ///< tracked in each image
   std::vector<double> times_s{6, 30};  ///< after the first frame: when errors are taken
   bool plain = false;                  ///< residuals without robust losses
+  bool imu_as_given = false;           ///< the IMU's noise is not measured anew
 };
 
 struct ConsistencyFlight {

@@ -3,9 +3,10 @@
 // built by default:
 //
 //   ninja -C build/release consistency_figures
-//   build/release/libs/estimator/consistency_figures SEEDS DURATION_S LINES [plain] [FIRST_SEED]
+//   build/release/libs/estimator/consistency_figures SEEDS DURATION_S LINES [MODE] [FIRST_SEED]
 //
-// LINES in each image: 25 or 0; plain: without robust losses. Prints the error of the causal trajectory (RMSE after
+// LINES in each image: 25 or 0. MODE: plain (without robust losses), given (the IMU's noise is not measured anew),
+// plain,given, or default. Prints the error of the causal trajectory (RMSE after
 // alignment of position and yaw) and, at some times, the mean over the seeds of the squared errors in units of the
 // estimated covariance (NEES) for each degree of freedom, which is 1 where that is right, with the bounds of 95 %, the
 // median, and the largest. Points and lines: of single distances and directions, as handed over to the map; their
@@ -61,7 +62,9 @@ int main(int argc, char** argv) {
   ConsistencySetting setting;
   setting.duration_s = argc > 2 ? std::atof(argv[2]) : 30;
   setting.lines = argc > 3 ? std::atoi(argv[3]) : 25;
-  setting.plain = argc > 4 && argv[4] == std::string("plain");
+  const std::string mode = argc > 4 ? argv[4] : "";
+  setting.plain = mode.find("plain") != std::string::npos;
+  setting.imu_as_given = mode.find("given") != std::string::npos;
   const int first = argc > 5 ? std::atoi(argv[5]) : 1;
   setting.times_s = {6, 30, 120};
   std::vector<double> errors;

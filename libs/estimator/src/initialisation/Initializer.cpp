@@ -260,11 +260,7 @@ double Initializer::relativeScaleSigma(SlidingWindow& window) const {
   factors.addImu();
   factors.addPoints();
   factors.addGauge();
-  CalibrationParams frozen = params_.calibration;
-  frozen.extrinsic_rotation_sigma_rad = frozen.extrinsic_translation_sigma_m = 1e-6;
-  frozen.refine_camera = frozen.refine_readout = frozen.refine_time_offset = false;
-  factors.addCalibrationPriors(frozen, T_b_c_calibrated_);
-  ReducedSystem system(window, factors.factors(), {}, {});
+  ReducedSystem system(window, factors.factors(), {}, {{BlockKey::kExtrinsics, 0}, {BlockKey::kCorrection, 0}});
   system.linearise();
   constexpr double kFloor = 1e-9;
   const Marginals marginals(system.eliminate(), kFloor);

@@ -29,7 +29,12 @@ Eigen::VectorXd Marginals::sigmas(const BlockKey& key) const {
 }
 
 Eigen::MatrixXd Marginals::halves(const Eigen::MatrixXd& F_transposed) const {
-  return L_.triangularView<Eigen::Lower>().solve(F_transposed);
+  Eigen::Index from = 0;  // above, L^-1 F' is zero as F' is
+  while (from < F_transposed.rows() && F_transposed.row(from).isZero(0)) ++from;
+  const Eigen::Index below = F_transposed.rows() - from;
+  Eigen::MatrixXd halves = F_transposed;
+  L_.bottomRightCorner(below, below).triangularView<Eigen::Lower>().solveInPlace(halves.bottomRows(below));
+  return halves;
 }
 
 double Marginals::variance(const Eigen::VectorXd& direction) const {

@@ -217,9 +217,25 @@ CameraChain ReducedSystem::chain() const {
   return {layout, views_, places};
 }
 
+void ReducedSystem::hold(const BlockKey& key, int first, int count) {
+  const Eigen::Index at = offsetOf(key);
+  for (int i = 0; at >= 0 && i < count; ++i) held_.push_back(at + first + i);
+}
+
+void ReducedSystem::leaveOutHeld(Eigen::MatrixXd& H, Eigen::VectorXd& b) const {
+  constexpr double kKnown = 1e18;  // beside zeros: a sigma of 1e-9 that no rounding error gets from
+  for (const Eigen::Index row : held_) {
+    H.row(row).setZero();
+    H.col(row).setZero();
+    H(row, row) = kKnown;
+    b[row] = 0;
+  }
+}
+
 NormalEquations ReducedSystem::eliminate() {
   NormalEquations result = states_;
   chain().add(landmarks_.eliminate(0), result.H, result.b);
+  leaveOutHeld(result.H, result.b);
   result.H.triangularView<Eigen::StrictlyUpper>() = result.H.transpose();
   return result;
 }
@@ -229,6 +245,7 @@ bool ReducedSystem::solve(double damping) {
   Eigen::MatrixXd H = states_.H;
   Eigen::VectorXd b = states_.b;
   chain.add(landmarks_.eliminate(damping), H, b);
+  leaveOutHeld(H, b);
   const Eigen::VectorXd added = damping * H.diagonal().cwiseMax(kLeastDamping);
   H.diagonal() += added;
   if (!factoriseSparse(H)) return false;

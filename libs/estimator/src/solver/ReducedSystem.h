@@ -38,6 +38,9 @@ class ReducedSystem {
   ReducedSystem(SlidingWindow& window, const std::vector<Factor>& factors, const std::set<BlockKey>& first,
                 const std::set<BlockKey>& frozen, const std::set<BlockKey>& staying = {});
 
+  /// These components of a block are constants, too: equations without them.
+  void hold(const BlockKey& key, int first, int count);
+
   /// Half the sum of (robust) squares at the window's present values.
   double cost() const;
 
@@ -70,6 +73,7 @@ class ReducedSystem {
   double addPrior(const Factor& factor, const PriorFactor& prior);
 
   CameraChain chain() const;
+  void leaveOutHeld(Eigen::MatrixXd& H, Eigen::VectorXd& b) const;
 
   /// Where the columns of a factor's blocks lie, among their own and among the states' (negative: a constant).
   struct Placement {
@@ -81,8 +85,9 @@ class ReducedSystem {
 
   SlidingWindow& window_;
   LandmarkSystem landmarks_;
-  NormalEquations states_;         // of the others alone, lower triangle
-  std::vector<CameraView> views_;  // at the last linearisation
+  NormalEquations states_;          // of the others alone, lower triangle
+  std::vector<Eigen::Index> held_;  // rows of the states' equations
+  std::vector<CameraView> views_;   // at the last linearisation
   Eigen::VectorXd step_;
   std::vector<double> saved_;
   double model_decrease_ = 0, states_move_ = 0;

@@ -17,6 +17,14 @@ constexpr double kLeastGain = 1e-3;   // of the decrease that the model promised
 
 }  // namespace
 
+void holdCalibration(ReducedSystem& system, const CalibrationParams& calibration) {
+  constexpr BlockKey kCorrection{BlockKey::kCorrection, 0};
+  if (!calibration.refine_extrinsics) system.hold({BlockKey::kExtrinsics, 0}, 0, kPoseTangent);
+  if (!calibration.refine_camera) system.hold(kCorrection, 0, kReadoutAt);
+  if (!calibration.refine_readout) system.hold(kCorrection, kReadoutAt, 1);
+  if (!calibration.refine_time_offset) system.hold(kCorrection, kTimeOffsetAt, 1);
+}
+
 SolveSummary solveWindow(SlidingWindow& window, const std::vector<Factor>& factors,
                          const CalibrationParams& calibration, const SolveLimits& limits) {
   std::set<BlockKey> frozen;
@@ -24,6 +32,7 @@ SolveSummary solveWindow(SlidingWindow& window, const std::vector<Factor>& facto
   if (!calibration.refine_camera && !calibration.refine_readout && !calibration.refine_time_offset)
     frozen.insert({BlockKey::kCorrection, 0});
   ReducedSystem system(window, factors, {}, frozen);
+  holdCalibration(system, calibration);
 
   SolveSummary summary;
   double cost = summary.initial_cost = system.linearise();

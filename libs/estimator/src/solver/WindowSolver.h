@@ -21,6 +21,9 @@ struct SolveLimits {
   bool information = false;  ///< whether SolveSummary::information is wanted
 };
 
+/// Makes constants of what is not refined of the calibration.
+void holdCalibration(ReducedSystem& system, const CalibrationParams& calibration);
+
 /// Minimises the given residuals over all blocks of the window they touch: Levenberg-Marquardt on ReducedSystem. One
 /// thread and a limit on iterations, not on time: the same result every run.
 SolveSummary solveWindow(SlidingWindow& window, const std::vector<Factor>& factors,

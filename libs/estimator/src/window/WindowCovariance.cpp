@@ -55,11 +55,13 @@ void WindowCovariance::place(const BlockKey& key, const Eigen::MatrixXd& rows, E
   if (at >= 0) F_transposed.middleRows(at, rows.cols()) += rows.transpose();
 }
 
-Eigen::MatrixXd WindowCovariance::halvesOfDrift(const SlidingWindow& window) const {
+const Eigen::MatrixXd& WindowCovariance::halvesOfDrift(const SlidingWindow& window) const {
+  if (drift_of_ == window.frames.front().id) return halves_of_drift_;
+  drift_of_ = window.frames.front().id;
   Eigen::MatrixXd F = Eigen::MatrixXd::Zero(marginals_.size(), 4);
   for (const auto& [key, rows] : window.drift.by_state) place(key, rows, F);
   place(poseOf(window.frames.front()), gaugeOf(window.frames.front()), F);
-  return halves(F);
+  return halves_of_drift_ = halves(F);
 }
 
 StateCovariance WindowCovariance::start(SlidingWindow& window, FrameId first) const {
@@ -72,6 +74,7 @@ StateCovariance WindowCovariance::start(SlidingWindow& window, FrameId first) co
   const Eigen::MatrixXd half = halves(F);
   drift.covariance = half.transpose() * half;
   window.drift = std::move(drift);
+  drift_of_.reset();
   StateCovariance open = StateCovariance::Identity();  // without position and yaw
   open.topLeftCorner<3, 3>().setZero();
   const Eigen::Vector3d up_b = frame.T_w_b().R().row(2);
@@ -81,12 +84,15 @@ StateCovariance WindowCovariance::start(SlidingWindow& window, FrameId first) co
 
 StateCovariance WindowCovariance::of(const SlidingWindow& window, const WindowFrame& frame) const {
   const ByGauge N = byGauge(frame);
-  Eigen::MatrixXd F = Eigen::MatrixXd::Zero(marginals_.size(), kStateTangent);
-  const Eigen::MatrixXd one = Eigen::MatrixXd::Identity(kStateTangent, kStateTangent);
-  place(poseOf(frame), one.leftCols(kPoseTangent), F);
-  place(motionOf(frame), one.rightCols(kMotionSize), F);
-  place(poseOf(window.frames.front()), -N * gaugeOf(window.frames.front()), F);
-  const Eigen::MatrixXd half = halves(F);
+  const Gauge held = gaugeOf(window.frames.front());
+  Eigen::MatrixXd of_pose = Eigen::MatrixXd::Zero(marginals_.size(), kPoseTangent);
+  Eigen::MatrixXd of_motion = Eigen::MatrixXd::Zero(marginals_.size(), kMotionSize);
+  place(poseOf(frame), Eigen::MatrixXd::Identity(kPoseTangent, kPoseTangent), of_pose);
+  place(motionOf(frame), Eigen::MatrixXd::Identity(kMotionSize, kMotionSize), of_motion);
+  place(poseOf(window.frames.front()), -N.topRows<kPoseTangent>() * held, of_pose);
+  place(poseOf(window.frames.front()), -N.bottomRows<kMotionSize>() * held, of_motion);
+  Eigen::MatrixXd half(marginals_.size(), kStateTangent);
+  half << halves(of_pose), halves(of_motion);  // motions come first in the equations: more to solve for
   StateCovariance covariance = half.transpose() * half;
   covariance += N * window.drift.covariance * N.transpose();
   const StateCovariance crossed = half.transpose() * halvesOfDrift(window) * N.transpose();
@@ -117,6 +123,7 @@ void WindowCovariance::forget(SlidingWindow& window, FrameId leaving) const {
   Eigen::MatrixXd K = Eigen::MatrixXd::Zero(marginals_.size(), 4);
   for (const auto& [key, columns] : by_state) place(key, columns, K);
   Eigen::MatrixXd H = information_.H(rows, rows);
+  drift_of_.reset();
   H.diagonal().array() += kFloor;
   K -= information_.H(Eigen::all, rows) * H.llt().solve(Eigen::MatrixXd(K(rows, Eigen::all)));
   by_state.clear();

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <optional>
+
 #include "lintel/estimator/SlidingWindow.h"
 #include "lintel/inertial/Propagation.h"
 #include "solver/Marginals.h"
@@ -53,10 +55,12 @@ class WindowCovariance {
   Eigen::MatrixXd halves(const Eigen::MatrixXd& F_transposed) const;
 
   /// L^-1 F' of the drift, with the oldest frame held.
-  Eigen::MatrixXd halvesOfDrift(const SlidingWindow& window) const;
+  const Eigen::MatrixXd& halvesOfDrift(const SlidingWindow& window) const;
 
   NormalEquations information_;
   Marginals marginals_;
+  mutable std::optional<FrameId> drift_of_;  // the oldest frame that halves_of_drift_ belongs to
+  mutable Eigen::MatrixXd halves_of_drift_;
 };
 
 }  // namespace lintel

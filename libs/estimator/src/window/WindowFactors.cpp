@@ -44,7 +44,7 @@ void WindowFactors::addCalibrationPriors(const CalibrationParams& params, const 
   calibration_loss_ = std::make_unique<ceres::CauchyLoss>(params.loss_width);
   const auto addParts = [&](PriorParts parts, BlockKey::Kind kind) {
     for (PriorPart& part : parts)
-      add(std::move(part.factor), {{kind, 0}}, part.refined ? calibration_loss_.get() : nullptr);
+      if (part.refined) add(std::move(part.factor), {{kind, 0}}, calibration_loss_.get());
   };
   addParts(makeExtrinsicsPriors(params, T_b_c_calibrated), BlockKey::kExtrinsics);
   addParts(makeCorrectionPriors(params), BlockKey::kCorrection);

@@ -30,6 +30,7 @@ class WindowFactors {
   void addMeasurements(const EstimatorParams& params);
 
   void addPriors();
+  /// Of what is refined; the solver holds the rest (holdCalibration).
   void addCalibrationPriors(const CalibrationParams& params, const Pose& T_b_c_calibrated);
   /// Ties position and yaw of the oldest frame to what they are: the four directions that no measurement sees. Without
   /// it a solve may turn the whole window, and the causal trajectory would jump. Never marginalised.

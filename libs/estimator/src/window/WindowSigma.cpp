@@ -2,6 +2,7 @@
 #include "window/WindowSigma.h"
 
 #include "solver/Marginals.h"
+#include "solver/WindowSolver.h"
 #include "window/WindowFactors.h"
 
 namespace lintel {
@@ -12,14 +13,17 @@ NormalEquations informationOf(SlidingWindow& window, const EstimatorParams& para
   WindowFactors factors(window, params.factors);
   factors.addAll(params, T_b_c_calibrated);
   ReducedSystem system(window, factors.factors(), {}, {});
+  holdCalibration(system, params.calibration);
   system.linearise();
   return system.eliminate();
 }
 
 Eigen::Matrix<double, 14, 14> jointCovariance(const Marginals& marginals) {
   Eigen::MatrixXd F = Eigen::MatrixXd::Zero(marginals.size(), kPoseTangent + kCorrectionSize);
-  F.block<kPoseTangent, kPoseTangent>(marginals.offsetOf({BlockKey::kExtrinsics, 0}), 0).setIdentity();
-  F.block<kCorrectionSize, kCorrectionSize>(marginals.offsetOf({BlockKey::kCorrection, 0}), kPoseTangent).setIdentity();
+  const Eigen::Index extrinsics = marginals.offsetOf({BlockKey::kExtrinsics, 0});
+  if (extrinsics >= 0) F.block<kPoseTangent, kPoseTangent>(extrinsics, 0).setIdentity();
+  const Eigen::Index correction = marginals.offsetOf({BlockKey::kCorrection, 0});
+  if (correction >= 0) F.block<kCorrectionSize, kCorrectionSize>(correction, kPoseTangent).setIdentity();
   const Eigen::MatrixXd halves = marginals.halves(F);
   return halves.transpose() * halves;
 }

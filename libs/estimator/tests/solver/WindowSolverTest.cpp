@@ -79,6 +79,25 @@ TEST(WindowSolver, TracksThatSlideLoseTheirWeightAsWholes) {
   EXPECT_LT(errorWithSlidingPoints(kParams.factors), 0.7 * errorWithSlidingPoints(withoutTrackLoss()));
 }
 
+TEST(WindowSolver, WhatIsNotRefinedIsAConstantAndTheRestIsNot) {
+  EstimatorParams params;
+  params.calibration.refine_camera = params.calibration.refine_readout = params.calibration.refine_extrinsics = false;
+  SlidingWindow window = disturbedWindow();
+  const PoseBlock extrinsics = window.extrinsics;
+  WindowFactors factors(window, params.factors);
+  factors.addAll(params, window.T_b_c());
+  solveWindow(window, factors.factors(), params.calibration, {50});
+  EXPECT_EQ(window.extrinsics, extrinsics);
+  const Eigen::VectorXd camera = window.correction.head<kTimeOffsetAt>();
+  EXPECT_EQ(camera, Eigen::VectorXd::Zero(kTimeOffsetAt)) << "not a nanometre";
+  EXPECT_NE(window.correction[kTimeOffsetAt], 0);
+  EXPECT_LT(std::abs(window.correction[kTimeOffsetAt]), 0.01);
+  // and the equations know it: no number in them is that of a constant
+  ReducedSystem system(window, factors.factors(), {}, {{BlockKey::kExtrinsics, 0}});
+  system.linearise();
+  EXPECT_LT(system.eliminate().H.diagonal().maxCoeff(), 1e15);
+}
+
 TEST(WindowSolver, StopsAtTheLimitOfIterations) {
   SlidingWindow window = disturbedWindow();
   const WindowFactors factors = everything(window);
