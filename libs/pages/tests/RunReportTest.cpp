@@ -125,6 +125,18 @@ TEST(RunReport, ShowsPlacesSeenAgainAndWhyOthersWereRefused) {
   EXPECT_THAT(page, HasSubstr("1: its points cover little of the image"));
 }
 
+TEST(RunReport, SaysWhichPiecesAreInOneFrame) {
+  GoodRun run;
+  EXPECT_THAT(runReport(run.record, run.result, run.series), Not(HasSubstr("Pieces between interruptions")));
+  const auto at = [&](int i) { return run.result.trajectory[static_cast<std::size_t>(i)].t_ns; };
+  run.result.map.pieces = {
+      {0, at(0), at(50), 0, 0, 0}, {5, at(60), at(90), 60, 1, 0}, {9, at(100), at(150), 100, 0, 0}};
+  const std::string page = runReport(run.record, run.result, run.series);
+  EXPECT_THAT(page, HasSubstr("Pieces between interruptions"));
+  EXPECT_THAT(page, HasSubstr("its own"));
+  EXPECT_THAT(page, HasSubstr("No place of piece 2 was found in those before"));
+}
+
 TEST(RunReport, ShowsOptionsThatDiffer) {
   GoodRun run;
   run.record.configuration = "a: 1\nb:\n  c: 3\n";

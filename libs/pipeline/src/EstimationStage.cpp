@@ -107,16 +107,18 @@ void EstimationStage::refineMap(MapMaterial& material, const FinishOptions& opti
     result_.loops = loops_.find(material, options.loops);
   }
   const StageClock::Scope scope(result_.statistics.refinement);
-  const std::vector<RunAlignment>& alignments = result_.loops.places.alignments;
-  const MapMaterial separate = alignments.empty() ? MapMaterial{} : material;
-  alignPieces(alignments, material);
-  result_.refinement = refinement_.refine(material, options.refinement, joinsOf(result_.loops));
-  if (result_.refinement.accepted) {
-    loops_.measureDrift(material, result_.loops);
-  } else if (!alignments.empty()) {
+  const PlaceReport& places = result_.loops.places;
+  const MapMaterial separate = places.pairs.empty() ? MapMaterial{} : material;
+  alignPieces(places.alignments, material);
+  const bool spread = spreadDrift(sightingsOf(places, loops_.cameras()), material);
+  RefinementReport& report = result_.refinement;
+  report = refinement_.refine(material, options.refinement, joinsOf(result_.loops));
+  if (!report.cancelled && (spread || !places.alignments.empty()) && (!report.accepted || report.joins_refused)) {
     material = separate;
-    prepareMaterial(configuration_.map, material);
+    report = refinement_.refine(material, options.refinement);
+    report.joins_refused = true;
   }
+  if (report.accepted) loops_.measureDrift(material, result_.loops);
 }
 
 void EstimationStage::densifyMap(MapMaterial& material, const FinishOptions& options) {

@@ -93,10 +93,15 @@ LoopResult LoopStage::find(const MapMaterial& material, const std::function<bool
   return loops;
 }
 
+std::unordered_map<std::int64_t, Pose> LoopStage::cameras() const {
+  std::unordered_map<std::int64_t, Pose> poses;
+  for (const PlaceKeyframe& frame : frames_) poses.emplace(frame.view->t_ns, frame.T_w_c);
+  return poses;
+}
+
 void LoopStage::measureDrift(const MapMaterial& refined, LoopResult& loops) const {
   const std::unordered_map<std::int64_t, Pose> poses = posesOf(refined);
-  std::unordered_map<std::int64_t, Pose> causal;
-  for (const PlaceKeyframe& frame : frames_) causal.emplace(frame.view->t_ns, frame.T_w_c);
+  const std::unordered_map<std::int64_t, Pose> causal = cameras();
   for (const PlacePair& pair : loops.places.pairs) {
     if (!pair.refusal.empty() || pair.joinsRuns()) continue;
     const auto earlier = poses.find(pair.earlier_ns), later = poses.find(pair.later_ns);
@@ -137,6 +142,21 @@ std::vector<PointJoin> joinsOf(const LoopResult& loops) {
   std::vector<PointJoin> joins;
   for (const SamePoint& same : loops.places.same) joins.push_back({same.earlier, same.later, same.votes});
   return joins;
+}
+
+std::vector<PlaceSighting> sightingsOf(const PlaceReport& places,
+                                       const std::unordered_map<std::int64_t, Pose>& odometry) {
+  std::unordered_map<int, Pose> moves;
+  for (const RunAlignment& alignment : places.alignments) moves.emplace(alignment.run, alignment.world_from_run);
+  const auto moveOf = [&](int run) { return moves.count(run) > 0 ? moves.at(run) : Pose{}; };
+  std::vector<PlaceSighting> sightings;
+  for (const PlacePair& pair : places.pairs) {
+    const auto later = odometry.find(pair.later_ns);
+    if (!pair.refusal.empty() || later == odometry.end()) continue;
+    sightings.push_back({pair.earlier_ns, pair.later_ns, moveOf(pair.later_run) * later->second,
+                         moveOf(pair.earlier_run) * pair.T_w_c});
+  }
+  return sightings;
 }
 
 void alignPieces(const std::vector<RunAlignment>& alignments, MapMaterial& material) {

@@ -3,8 +3,10 @@
 
 #include <functional>
 #include <memory>
+#include <unordered_map>
 #include <vector>
 
+#include "lintel/mapping/DriftSpreading.h"
 #include "lintel/mapping/LineMap.h"
 #include "lintel/mapping/MapMaterial.h"
 #include "lintel/mapping/PointJoin.h"
@@ -23,6 +25,9 @@ class LoopStage {
 
   /// The places; `progress` as for findPlaces().
   LoopResult find(const MapMaterial& material, const std::function<bool(double)>& progress);
+
+  /// Where the odometry had the described frames.
+  std::unordered_map<std::int64_t, Pose> cameras() const;
 
   /// Compares what the images say of the accepted pairs of one piece with the refined trajectory.
   void measureDrift(const MapMaterial& refined, LoopResult& loops) const;
@@ -46,6 +51,11 @@ class LoopStage {
 
 /// The tracks that were found to be of one point, for the refinement.
 std::vector<PointJoin> joinsOf(const LoopResult& loops);
+
+/// What the accepted pairs say of where their later frames are; `odometry` has the cameras by their times, pieces and
+/// pairs as they were before alignPieces().
+std::vector<PlaceSighting> sightingsOf(const PlaceReport& places,
+                                       const std::unordered_map<std::int64_t, Pose>& odometry);
 
 /// Brings the pieces of a material that have places in common into one frame.
 void alignPieces(const std::vector<RunAlignment>& alignments, MapMaterial& material);

@@ -185,6 +185,7 @@ MapMerging mergeMaps(const LineMap& first, const LineMap& second, const MapMergi
     return result;
   }
   alignWorlds(loops.places.alignments, material);
+  spreadDrift(sightingsOf(loops.places, before), material);
   const BatchRefinement refinement(first.rig, configuration.estimator, configuration.map, configuration.refinement);
   result.refinement = refinement.refine(material, options.refining, joinsOf(loops));
   if (!result.refinement.accepted || result.refinement.joins_refused) {

@@ -26,7 +26,7 @@ struct MapKeyframe {
   Eigen::Vector3d bias_gyro = Eigen::Vector3d::Zero();   ///< [rad/s]
   Eigen::Vector3d bias_accel = Eigen::Vector3d::Zero();  ///< [m/s^2]
   /// The IMU from the keyframe before; null for the first of a piece, and where the map does not keep it.
-  std::shared_ptr<const Preintegration> imu;
+  std::shared_ptr<const Preintegration> imu = nullptr;
   bool at_rest = false;
 };
 
