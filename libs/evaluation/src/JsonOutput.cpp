@@ -67,6 +67,8 @@ Json jsonOf(const LineErrors& e) {
           {"observable_m", e.observable_m},
           {"tolerances_m", e.tolerances_m},
           {"surface_precision", e.surface_precision},
+          {"surface_length_m", e.surface_length_m},
+          {"surface_lines", e.surface_lines},
           {"precision", e.precision},
           {"recall", e.recall},
           {"duplicates", e.duplicates},
@@ -89,16 +91,26 @@ Json jsonOf(const Consistency& c) {
           {"nees_roll_pitch", jsonOf(c.roll_pitch)}};
 }
 
+Json jsonOf(const SigmaShares& s) {
+  return {{"ends", s.ends}, {"within_1_sigma", s.within_1}, {"within_2_sigma", s.within_2}};
+}
+
+Json jsonOf(const ConsistencyBySource& c) {
+  return {{"tracked", jsonOf(c.tracked)}, {"mapped", jsonOf(c.mapped)}, {"constrained", jsonOf(c.constrained)}};
+}
+
 }  // namespace
 
 std::string toJson(const std::optional<TrajectoryErrors>& trajectory,
                    const std::optional<TrajectoryErrors>& map_trajectory, const std::optional<LineErrors>& lines,
-                   const std::optional<Consistency>& consistency) {
+                   const std::optional<Consistency>& consistency, const std::optional<LineConsistency>& line_sigmas) {
   Json json = Json::object();
   if (trajectory) json["trajectory"] = jsonOf(*trajectory);
   if (map_trajectory) json["map_trajectory"] = jsonOf(*map_trajectory);
   if (lines) json["lines"] = jsonOf(*lines);
   if (consistency) json["consistency"] = jsonOf(*consistency);
+  if (line_sigmas)
+    json["line_sigmas"] = {{"near_an_edge", jsonOf(line_sigmas->near)}, {"edge_seen", jsonOf(line_sigmas->seen)}};
   return json.dump(2) + "\n";
 }
 

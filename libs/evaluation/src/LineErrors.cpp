@@ -99,13 +99,21 @@ void addPrecision(LineErrors& result, const std::vector<AlignedLine>& lines, con
 
 void addSurfacePrecision(LineErrors& result, const std::vector<AlignedLine>& lines, const LineErrorParams& params,
                          const SurfaceDistanceFunction& surface_distance) {
-  Shares precision(params.tolerances_m);
+  Shares precision(params.tolerances_m), inliers(params.tolerances_m);
   for (const AlignedLine& line : lines) {
     const auto pieces = piecesOf(line.segment, params.step_m);
     const double piece_m = line.segment.length() / static_cast<double>(pieces.size());
-    for (const Eigen::Vector3d& p : pieces) precision.add(piece_m, surface_distance(p));
+    double nearest_m = std::numeric_limits<double>::infinity();
+    for (const Eigen::Vector3d& p : pieces) {
+      const double distance_m = surface_distance(p);
+      precision.add(piece_m, distance_m);
+      nearest_m = std::min(nearest_m, distance_m);
+    }
+    inliers.add(1, nearest_m);
   }
   result.surface_precision = precision.result();
+  result.surface_lines = inliers.result();
+  for (const double share : result.surface_precision) result.surface_length_m.push_back(share * result.length_m);
 }
 
 void addRecall(LineErrors& result, const std::vector<AlignedLine>& lines, const std::vector<TrueLine>& truth,

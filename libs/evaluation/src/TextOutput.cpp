@@ -57,6 +57,15 @@ void printSquared(const char* name, const SquaredErrorSummary& s, std::ostream& 
       << fixed(s.low, 3) << " to " << fixed(s.high, 2) << " (right: 95 %)\n";
 }
 
+void printSigmas(const char* name, const ConsistencyBySource& c, std::ostream& out) {
+  const std::pair<const char*, const SigmaShares*> all[] = {
+      {"tracked", &c.tracked}, {"mapped", &c.mapped}, {"constrained", &c.constrained}};
+  out << "  " << std::left << std::setw(14) << name;
+  for (const auto& [source, s] : all)
+    out << source << " " << fixed(s->within_1, 3) << ", " << fixed(s->within_2, 3) << " of " << s->ends
+        << (s == &c.constrained ? "\n" : "  ");
+}
+
 }  // namespace
 
 void printText(const Consistency& c, std::ostream& out) {
@@ -91,7 +100,11 @@ void printText(const LineErrors& e, std::ostream& out) {
       << e.constrained << " constrained\n";
   if (!e.surface_precision.empty()) {
     printShares("on surfaces", e.tolerances_m, e.surface_precision, out);
-    out << "  of the map on true surfaces\n";
+    out << "  of the map on true surfaces\n" << std::left << std::setw(16) << "as limap's";
+    for (std::size_t i = 0; i < e.surface_length_m.size(); ++i)
+      out << (i > 0 ? "  " : "") << "R " << fixed(e.surface_length_m[i], 1) << " m, P "
+          << fixed(100 * e.surface_lines[i], 1) << " % @" << fixed(100 * e.tolerances_m[i], 0) << " cm";
+    out << "\n";
   }
   printShares("precision", e.tolerances_m, e.precision, out);
   out << "  of the map on true edges\n";
@@ -103,6 +116,12 @@ void printText(const LineErrors& e, std::ostream& out) {
   printSegmentErrors("well determined", e.well_determined_matched, out);
   printSegmentErrors("degenerate", e.degenerate_matched, out);
   printSegmentErrors("constrained", e.constrained_matched, out);
+}
+
+void printText(const LineConsistency& c, std::ostream& out) {
+  out << "ends within 1 and 2 sigmas of their edge\n";
+  printSigmas("near an edge", c.near, out);
+  printSigmas("edge seen", c.seen, out);
 }
 
 }  // namespace lintel

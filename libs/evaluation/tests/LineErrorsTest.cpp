@@ -125,6 +125,15 @@ TEST(LineErrors, SurfacesByHand) {
   EXPECT_NEAR(e.surface_precision[0], 0.75, 1e-9);
   EXPECT_NEAR(e.surface_precision[1], 1, 1e-9);
   EXPECT_TRUE(evaluateLines(map, {}, kEdges).surface_precision.empty());
+  EXPECT_NEAR(e.surface_length_m[0], 1.5, 1e-9);
+  EXPECT_NEAR(e.surface_length_m[1], 2, 1e-9);
+}
+
+TEST(LineErrors, LinesThatTouchASurfaceCountWhole) {
+  const auto floor = [](const Vector3d& p) { return std::abs(p.z()); };
+  const LineErrors e =
+      evaluateLines({mapLine({0, 0, 0}, {0, 0, 1}), mapLine({0, 0, 0.5}, {0, 0, 1})}, {}, kEdges, {}, floor);
+  EXPECT_DOUBLE_EQ(e.surface_lines[0], 0.5);
 }
 
 TEST(LineErrors, OfAnEmptyMap) {

@@ -10,6 +10,7 @@
 #include "CommandLine.h"
 #include "ProgramMain.h"
 #include "lintel/core/AtomicFile.h"
+#include "lintel/evaluation/LineConsistency.h"
 #include "lintel/evaluation/LineErrors.h"
 #include "lintel/evaluation/Output.h"
 #include "lintel/evaluation/TrajectoryErrors.h"
@@ -65,7 +66,7 @@ class LintelEval {
     if (!map_.empty()) evaluateMap();
     if (!json_.empty())
       AtomicFile::writeWhole(json_, toJson(evaluation_.trajectory, evaluation_.map_trajectory, evaluation_.lines,
-                                           evaluation_.consistency));
+                                           evaluation_.consistency, line_sigmas_));
     if (!report_.empty()) AtomicFile::writeWhole(report_, evaluationPage(evaluation_));
     return 0;
   }
@@ -181,6 +182,8 @@ class LintelEval {
       };
     evaluation_.lines =
         evaluateLines(evaluation_.map.lines, evaluation_.S_truth_map, evaluation_.true_lines, {}, surface_distance);
+    line_sigmas_ =
+        evaluateConsistency(evaluation_.map, evaluation_.S_truth_map, evaluation_.true_lines, evaluation_.groundtruth);
     if (!quiet_) printMap();
   }
 
@@ -192,6 +195,7 @@ class LintelEval {
     else
       out_ << "map alignment   none\n";
     printText(*evaluation_.lines, out_);
+    printText(*line_sigmas_, out_);
   }
 
   std::ostream& out_;
@@ -203,6 +207,7 @@ class LintelEval {
   bool quiet_ = false;
   TrajectoryErrorParams params_;
   Evaluation evaluation_;
+  std::optional<LineConsistency> line_sigmas_;
 };
 
 }  // namespace

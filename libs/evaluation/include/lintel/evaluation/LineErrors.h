@@ -39,7 +39,10 @@ struct LineErrors {
   double observable_m = 0;  ///< length of the true edges that count for recall
   std::vector<double> tolerances_m;
   std::vector<double>
-      surface_precision;          ///< share of the map within tolerance of a true surface; empty if none is known
+      surface_precision;  ///< share of the map within tolerance of a true surface; empty if none is known
+  // the measures of limap's evaluation [Liu2023]: metres of the map within tolerance of a true surface, and the share
+  // of lines of which some piece is; empty if no surface is known
+  std::vector<double> surface_length_m, surface_lines;
   std::vector<double> precision;  ///< share of the map within tolerance and angle of a true edge
   std::vector<double> recall;     ///< share of the observable edges within tolerance and angle of the map
   SegmentErrors all_matched, degenerate_matched, well_determined_matched;
