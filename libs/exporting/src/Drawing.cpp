@@ -209,6 +209,10 @@ Drawing makeDrawing(const LineMap& map, const ExportParams& params, bool far_poi
   if (layers.count(MapLayer::kPoints)) addPoints(params, far_points, drawing);
   if (layers.count(MapLayer::kKeyframes)) addKeyframes(drawing);
   if (layers.count(MapLayer::kTrajectory)) addTrajectory(drawing);
+  std::vector<const MapPoint*> points;
+  for (const DrawnPart& part : drawing.parts)
+    for (const DrawnPoint& point : part.points) points.push_back(point.point);
+  drawing.structure = drawnStructure(map, drawing.lines, points);
   return drawing;
 }
 

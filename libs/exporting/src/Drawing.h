@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "Colours.h"
+#include "DrawnStructure.h"
 #include "lintel/exporting/MapExport.h"
 
 namespace lintel {
@@ -39,6 +40,7 @@ struct Drawing {
   std::vector<DrawnPart> parts;  ///< lines by ascending group, then points, keyframes, trajectory; no empty ones
   std::vector<const MapKeyframe*> keyframes;  ///< drawn ones
   std::vector<const MapLine*> lines;          ///< drawn ones, ascending id
+  DrawnStructure structure;
   LineStyle style = LineStyle::kLines;
   LineColour colour = LineColour::kKind;
   double radius_m = 0.01;                           ///< of lines' tubes

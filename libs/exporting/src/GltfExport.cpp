@@ -86,6 +86,25 @@ Json keyframeData(const Drawing& drawing) {
   return {{"id", ids}, {"t_ns", times}, {"strokes_each", kFrustumStrokes}};
 }
 
+/// Corners by column, and planes; in the world's axes, z up.
+Json structureData(const Drawing& drawing) {
+  const auto finite = [](double v) { return std::isfinite(v) ? Json(static_cast<float>(v)) : Json(nullptr); };
+  Json places = Json::array(), sigmas = Json::array(), lines = Json::array(), planes = Json::array();
+  for (const MapCorner& corner : drawing.structure.corners) {
+    places.push_back({finite(corner.p_w.x()), finite(corner.p_w.y()), finite(corner.p_w.z())});
+    sigmas.push_back(finite(corner.sigma_m)), lines.push_back(corner.lines);
+  }
+  for (const MapPlane& plane : drawing.structure.planes) {
+    const Eigen::Vector3d& n = plane.normal_w;
+    planes.push_back({{"name", plane.name},
+                      {"normal", {finite(n.x()), finite(n.y()), finite(n.z())}},
+                      {"offset_m", finite(plane.offset_m)},
+                      {"spread_m", finite(plane.spread_m)},
+                      {"lines", plane.lines}});
+  }
+  return {{"corners", {{"p_w", places}, {"sigma_m", sigmas}, {"lines", lines}}}, {"planes", planes}};
+}
+
 void addExtras(const Drawing& drawing, Json& json) {
   json["asset"]["generator"] = "Lintel";
   json["asset"]["extras"] = {{"source", drawing.map->source},
@@ -93,6 +112,7 @@ void addExtras(const Drawing& drawing, Json& json) {
                              {"points", drawing.summary.points},
                              {"keyframes", drawing.summary.keyframes},
                              {"frame", "world, z up, below the node Map"}};
+  if (json.contains("scenes") && !json["scenes"].empty()) json["scenes"][0]["extras"] = structureData(drawing);
   if (!json.contains("nodes")) return;
   for (Json& node : json["nodes"]) {
     for (const DrawnPart& part : drawing.parts) {

@@ -2,6 +2,7 @@
 #include <cmath>
 #include <cstring>
 #include <nlohmann/json.hpp>
+#include <unordered_map>
 
 #include "ViewerPage.h"
 #include "Writers.h"
@@ -77,6 +78,21 @@ Json linesData(const Drawing& drawing, std::int64_t origin_ns) {
   return data;
 }
 
+/// Corners, and planes with the places of their lines among those drawn.
+void addStructure(const Drawing& drawing, Json& data) {
+  Floats corners;
+  for (const MapCorner& corner : drawing.structure.corners) corners.add(corner.p_w);
+  data["corners"] = corners.text();
+  std::unordered_map<std::uint64_t, std::size_t> place;
+  for (std::size_t i = 0; i < drawing.lines.size(); ++i) place.emplace(drawing.lines[i]->id, i);
+  data["planes"] = Json::array();
+  for (const MapPlane& plane : drawing.structure.planes) {
+    Json lines = Json::array();
+    for (const std::uint64_t id : plane.lines) lines.push_back(place.at(id));
+    data["planes"].push_back({{"name", plane.name}, {"lines", lines}});
+  }
+}
+
 Json coloursData(const Drawing& drawing) {
   Json data;
   const std::pair<const char*, LineColour> modes[] = {{"kind", LineColour::kKind},
@@ -139,6 +155,7 @@ Json mapData(const Drawing& drawing) {
   for (const DrawnPart& part : drawing.parts) {
     if (part.layer == MapLayer::kLines) data["groups"].push_back({{"group", part.group}, {"name", names(part.group)}});
   }
+  addStructure(drawing, data);
   data["points"] = points.text();
   data["keyframes"] = keyframes.text();
   data["keyframe_count"] = drawing.summary.keyframes;

@@ -26,6 +26,8 @@ class JsonWriter {
     list("keyframes", drawing_.keyframes, [this](const MapKeyframe* keyframe) { writeKeyframe(*keyframe); });
     list("points", points(), [this](const MapPoint* point) { writePoint(*point); });
     list("lines", drawing_.lines, [this](const MapLine* line) { writeLine(*line); });
+    list("corners", placesOf(drawing_.structure.corners), [this](const MapCorner* corner) { writeCorner(*corner); });
+    list("planes", placesOf(drawing_.structure.planes), [this](const MapPlane* plane) { writePlane(*plane); });
     list("trajectory", trajectory(), [this](const auto* stamped) {
       text_ << "{\"t_ns\": " << stamped->first << ", ", pose(stamped->second), text_ << '}';
     });
@@ -167,6 +169,31 @@ class JsonWriter {
       text_ << '}';
     }
     text_ << "]}";
+  }
+
+  template <class Thing>
+  static std::vector<const Thing*> placesOf(const std::vector<Thing>& things) {
+    std::vector<const Thing*> places;
+    for (const Thing& thing : things) places.push_back(&thing);
+    return places;
+  }
+
+  void idsField(std::string_view name, const std::vector<std::uint64_t>& ids) {
+    text_ << ", \"" << name << "\": [";
+    for (std::size_t i = 0; i < ids.size(); ++i) text_ << (i == 0 ? "" : ", ") << ids[i];
+    text_ << ']';
+  }
+
+  void writeCorner(const MapCorner& corner) {
+    vectorField("p_w", corner.p_w, "{"), field("sigma_m", corner.sigma_m), idsField("lines", corner.lines);
+    text_ << '}';
+  }
+
+  void writePlane(const MapPlane& plane) {
+    text_ << "{\"name\": ";
+    string(plane.name);
+    vectorField("normal", plane.normal_w), field("offset_m", plane.offset_m), field("spread_m", plane.spread_m);
+    idsField("lines", plane.lines), idsField("points", plane.points), text_ << '}';
   }
 
   const Drawing& drawing_;

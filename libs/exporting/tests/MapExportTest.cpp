@@ -169,6 +169,45 @@ TEST_F(MapExport, JsonHoldsTheFullData) {
   EXPECT_EQ(json["rig"]["fx"], 458.654);
 }
 
+/// Three lines, of which the last was seen in two keyframes only.
+LineMap smallCorner() {
+  LineMap map;
+  addLine(map, {0, 0, 0}, {1, 0, 0}, -1);
+  addLine(map, {0, 0, 0}, {0, 1, 0}, -1);
+  addLine(map, {1, 1, 0}, {1, 0, 0}, -1);
+  map.lines[0].observations.resize(9), map.lines[1].observations.resize(9), map.lines[2].observations.resize(2);
+  map.corners = {{{0, 0, 0}, 0.01, {10, 11}}, {{1, 0, 0}, 0.02, {10, 12}}};
+  map.planes = {{"floor", {0, 0, 1}, 0.25, 0.002, {10, 11, 12}, {7}}};
+  return map;
+}
+
+TEST_F(MapExport, CornersAndPlanesNameLinesThatAreThere) {
+  const LineMap map = smallCorner();
+  exportMap(map, in("map.json"));
+  auto json = nlohmann::json::parse(content(in("map.json")));
+  ASSERT_EQ(json["corners"].size(), 2u);
+  EXPECT_EQ(json["corners"][1]["p_w"], (std::vector<double>{1, 0, 0}));
+  EXPECT_EQ(json["corners"][1]["lines"], (std::vector<int>{10, 12}));
+  EXPECT_EQ(json["planes"][0]["name"], "floor");
+  EXPECT_EQ(json["planes"][0]["offset_m"], 0.25);
+  EXPECT_EQ(json["planes"][0]["points"].size(), 0u) << "the map has no point 7";
+  ExportParams params;
+  params.min_observations = 3;
+  exportMap(map, in("some.json"), params);
+  json = nlohmann::json::parse(content(in("some.json")));
+  EXPECT_EQ(json["corners"].size(), 1u);
+  EXPECT_EQ(json["planes"][0]["lines"], (std::vector<int>{10, 11}));
+}
+
+TEST_F(MapExport, GlbTellsOfCornersAndPlanes) {
+  exportMap(smallCorner(), in("map.glb"));
+  const std::string glb = content(in("map.glb"));
+  const auto extras = nlohmann::json::parse(glb.substr(20, glb.find("BIN") - 24))["scenes"][0]["extras"];
+  EXPECT_EQ(extras["corners"]["lines"][0], (std::vector<int>{10, 11}));
+  EXPECT_EQ(extras["corners"]["p_w"][1], (std::vector<double>{1, 0, 0}));
+  EXPECT_EQ(extras["planes"][0]["name"], "floor");
+}
+
 TEST_F(MapExport, HtmlIsOnePageWithItsData) {
   if (!std::filesystem::exists(kThreeFolder)) GTEST_SKIP() << "libjs-three is not installed";
   LineMap map = kRoom;

@@ -177,7 +177,7 @@ TEST_F(ViewerPage, LayersColoursHoverAndTimeWork) {
   const auto found = tried(kRoom);
   ASSERT_FALSE(found.is_null());
   EXPECT_EQ(found["faults"].size(), 0u) << found["faults"];
-  EXPECT_EQ(found["boxes"], 4);
+  EXPECT_EQ(found["boxes"], 5);
   EXPECT_GT(found["withLines"], found["linesOnly"]);
   EXPECT_GT(found["linesOnly"], 1000);
   EXPECT_EQ(found["withoutLines"], 0);

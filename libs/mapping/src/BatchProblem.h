@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <ceres/crs_matrix.h>
 #include <ceres/loss_function.h>
 #include <ceres/problem.h>
 
@@ -52,6 +53,9 @@ class BatchProblem {
   /// Keyframes and calibration as solved, into the material. Landmarks are estimated anew by MapFitting.
   void writeBack();
 
+  /// What the adjustment leaves open of the keyframes' cameras; empty when that cannot be said.
+  std::vector<CameraErrors> drawErrors();
+
   /// RMS of the IMU residuals without the biases' walks, in standard deviations, at the blocks' present values.
   double imuError() const;
 
@@ -67,6 +71,8 @@ class BatchProblem {
   void addGroups();
   template <class Target>
   void addView(ImageFactor<Target>& factor, ceres::LossFunction& loss, std::size_t keyframe, double* landmark);
+  std::vector<CameraErrors> cameraErrors(const Eigen::MatrixXd& drawn, const std::vector<std::size_t>& anchors) const;
+  std::vector<double> viewWeights(const ceres::CRSMatrix& jacobian, const std::vector<double>& residuals) const;
   bool isAnchor(std::size_t k) const;
   Carriage carriage(std::size_t k) const;
   void carryAlong();

@@ -185,6 +185,24 @@ RefinementReport BatchRefinement::refine(MapMaterial& material, const Refinement
   return report;
 }
 
+BatchRefinement::Used BatchRefinement::usedOf(const MapMaterial& material) const {
+  Used used;
+  for (const PointRecord& p : material.points) used.points.push_back(p.known && inliersOf(p) >= params_.min_views);
+  for (const LineRecord& l : material.lines)
+    used.lines.push_back(params_.lines && l.known && keyframesOf(l) >= params_.min_views &&
+                         l.estimate.sigmaDirection() <= params_.line_max_sigma_direction_rad &&
+                         l.estimate.sigmaPosition(0) <= params_.line_max_relative_sigma * l.distance_m);
+  return used;
+}
+
+std::vector<CameraErrors> BatchRefinement::errorsOf(MapMaterial& material) const {
+  constexpr double kInterval_s = 0.5;  // errors of poses change slowly: those between follow from their neighbours
+  const auto [use_point, use_line] = usedOf(material);
+  BatchProblem problem(calibrated_, estimator_, material, anchorsOf(material.keyframes, kInterval_s), use_point,
+                       use_line, static_cast<std::size_t>(std::max(0, params_.max_views)), {});
+  return problem.drawErrors();
+}
+
 RefinementReport BatchRefinement::adjust(MapMaterial& material, const RefinementProgress& progress,
                                          const std::vector<PointJoin>& joins) const {
   RefinementReport report;
@@ -215,12 +233,7 @@ RefinementReport BatchRefinement::adjust(MapMaterial& material, const Refinement
     report.joined =
         fitting.join(joins, params_.join_first_px * std::pow(params_.join_last_px / params_.join_first_px, relative),
                      params_.join_sigma_px);
-    std::vector<bool> use_point, use_line;
-    for (const PointRecord& p : material.points) use_point.push_back(p.known && inliersOf(p) >= params_.min_views);
-    for (const LineRecord& l : material.lines)
-      use_line.push_back(params_.lines && l.known && keyframesOf(l) >= params_.min_views &&
-                         l.estimate.sigmaDirection() <= params_.line_max_sigma_direction_rad &&
-                         l.estimate.sigmaPosition(0) <= params_.line_max_relative_sigma * l.distance_m);
+    const auto [use_point, use_line] = usedOf(material);
     std::vector<ParallelLines> groups;
     if (round > 0 && params_.groups) groups = parallelLines(map_, material);
     const std::vector<Anchors> anchors = last ? fewAnchors(material.keyframes, params_.most_keyframes)
@@ -266,6 +279,7 @@ RefinementReport BatchRefinement::adjust(MapMaterial& material, const Refinement
   std::sort(material.points.begin(), material.points.end(),
             [](const PointRecord& a, const PointRecord& b) { return a.id < b.id; });
   prepareMaterial(map_, material);
+  material.camera_errors = errorsOf(material);
   return report;
 }
 

@@ -20,6 +20,11 @@ class ByteWriter {
   void u64(std::uint64_t v) { little(v, 8); }
   void i32(std::int32_t v) { u32(static_cast<std::uint32_t>(v)); }
   void i64(std::int64_t v) { u64(static_cast<std::uint64_t>(v)); }
+  void f32(float v) {
+    std::uint32_t bits;
+    std::memcpy(&bits, &v, 4);
+    u32(bits);
+  }
   void f64(double v) {
     std::uint64_t bits;
     std::memcpy(&bits, &v, 8);
@@ -65,6 +70,12 @@ class ByteReader {
   std::uint64_t u64() { return little(8); }
   std::int32_t i32() { return static_cast<std::int32_t>(u32()); }
   std::int64_t i64() { return static_cast<std::int64_t>(u64()); }
+  float f32() {
+    const std::uint32_t bits = u32();
+    float v;
+    std::memcpy(&v, &bits, 4);
+    return v;
+  }
   double f64() {
     const std::uint64_t bits = u64();
     double v;

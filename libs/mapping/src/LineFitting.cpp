@@ -221,7 +221,7 @@ bool fitLine(const KeyframeCameras& cameras, const LineFitParams& params, LineRe
     const LineNormal normal = normalEquations(data, candidate);
     // Views further off than their sigmas say make the line less known; and they share errors that do not average out.
     const double spread = std::max(1.0, 2 * normal.cost / freedom);
-    const double common = 1 + params.systematic_px * params.systematic_px * static_cast<double>(views.size());
+    const double common = 1 + params.systematic * params.systematic * static_cast<double>(views.size());
     candidate.covariance =
         scaledCovariance(normal.H / (spread * common) + normal.H_tie, std::max(line.distance_m, 0.1));
     line.estimate = candidate;

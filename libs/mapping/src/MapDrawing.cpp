@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <algorithm>
 
+#include "CameraErrors.h"
 #include "LineGroups.h"
+#include "lintel/geometry/Rotation.h"
 #include "lintel/mapping/LineEvidence.h"
 #include "lintel/mapping/LineFitting.h"
 #include "lintel/mapping/MapBuilder.h"
@@ -35,8 +37,14 @@ class MapDrawer {
     const LineEvidence evidence = evidenceOf(params_, cameras_, line);
     if (!evidence.known) return std::nullopt;
     MapLine result;
-    result.sigma_direction_rad = evidence.sigma_direction_rad;
-    result.sigma_distance_m = evidence.sigma_distance_m;
+    result.covariance = covarianceAt(line.estimate, evidence.segment_w);
+    LineEstimate whole = line.estimate;
+    whole.covariance += covarianceByCameras(cameras_, material_.camera_errors, line);
+    const auto sigmaAt = [&](const Eigen::Vector3d& end) {
+      return whole.sigmaPosition((end - whole.middle_w).dot(whole.direction_w));
+    };
+    result.sigma_direction_rad = whole.sigmaDirection();
+    result.sigma_distance_m = std::max(sigmaAt(evidence.segment_w.start), sigmaAt(evidence.segment_w.end));
     result.id = line.id;
     result.segment_w = evidence.segment_w;
     result.mapped = line.mapped;
@@ -50,6 +58,15 @@ class MapDrawer {
   }
 
  private:
+  static LineCovariance covarianceAt(const LineEstimate& line, const Segment3& segment_w) {
+    const Eigen::Vector3d d = segment_w.direction();
+    const Eigen::Matrix2d turn = tangentBasis(d).transpose() * tangentBasis(line.direction_w);
+    const double along_m = (segment_w.midpoint() - line.middle_w).dot(line.direction_w);
+    Eigen::Matrix4d move;
+    move << turn, along_m * turn, Eigen::Matrix2d::Zero(), (d.dot(line.direction_w) < 0 ? -1 : 1) * turn;
+    return (move * line.covariance * move.transpose()).cast<float>();
+  }
+
   /// Tracks of a merged line may run the other way: start and end of the views follow the segment's.
   MapLineObservation observationOf(const LineView& view, const Segment3& segment_w) const {
     const Eigen::Matrix3d& R_c_w = cameras_.R_c_w(view.keyframe);
@@ -76,6 +93,7 @@ LineMap drawMap(const MapParams& params, const MapMaterial& material) {
   map.trajectory = material.trajectory;
   map.time_offset_s = material.time_offset_s;
   map.pieces = material.pieces;
+  map.camera_errors = material.camera_errors;
   for (const RetiredKeyframe& k : material.keyframes)
     map.keyframes.push_back({k.id, k.t_ns, k.T_w_b, k.v_w_b, k.bias.gyro, k.bias.accel, k.imu, k.at_rest});
   const MapDrawer drawer(params, material);

@@ -71,6 +71,7 @@ AppendedIds appendMaterial(MapMaterial other, MapMaterial& material) {
     piece.world += ids.pieces;
     material.pieces.push_back(piece);
   }
+  material.camera_errors.clear();  // another adjustment finds them
   for (RetiredKeyframe& keyframe : other.keyframes) {
     keyframe.id += ids.keyframes;
     material.keyframes.push_back(std::move(keyframe));

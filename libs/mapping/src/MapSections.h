@@ -19,7 +19,7 @@ struct MapSection {
 };
 
 /// All sections in the order in which they are written.
-constexpr std::size_t kMapSectionCount = 12;
+constexpr std::size_t kMapSectionCount = 16;
 extern const MapSection kMapSections[kMapSectionCount];
 
 // what merging needs, MergingSections.cpp

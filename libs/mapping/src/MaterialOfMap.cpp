@@ -16,6 +16,7 @@ MapMaterial materialOf(const MapParams& params, const LineMap& map) {
   material.time_offset_s = map.time_offset_s;
   material.trajectory = map.trajectory;
   material.pieces = map.pieces;
+  material.camera_errors = map.camera_errors;
   for (const MapKeyframe& keyframe : map.keyframes) {
     RetiredKeyframe k;
     k.id = keyframe.id, k.t_ns = keyframe.t_ns, k.T_w_b = keyframe.T_w_b, k.v_w_b = keyframe.v_w_b;

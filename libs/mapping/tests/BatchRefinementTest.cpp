@@ -168,6 +168,33 @@ TEST_F(BatchRefinementTest, TwoPointsLeftOutDoNotDecide) {
   EXPECT_TRUE(report.accepted) << report.verdict;
 }
 
+TEST_F(BatchRefinementTest, ErrorsOfTheCamerasAreAsLargeAsItSays) {
+  ASSERT_TRUE(refine(material_).accepted);
+  ASSERT_EQ(material_.camera_errors.size(), material_.keyframes.size());
+  const Similarity S = [&] {
+    std::vector<Eigen::Vector3d> estimate, truth;
+    for (const RetiredKeyframe& k : material_.keyframes) {
+      estimate.push_back(k.T_w_b.p);
+      truth.push_back(flight_.frames[k.id].truth.state.T_w_b.p);
+    }
+    return alignPositions(AlignmentKind::kSe3, estimate, truth);
+  }();
+  double shift2 = 0, turn2 = 0, said_shift2 = 0, said_turn2 = 0;
+  for (std::size_t i = 0; i < material_.keyframes.size(); ++i) {
+    const Pose& truth = flight_.frames[material_.keyframes[i].id].truth.state.T_w_b;
+    const Pose T = S.T_a_b * material_.keyframes[i].T_w_b;
+    shift2 += (T.p - truth.p).squaredNorm();
+    turn2 += logRotation(truth.q.conjugate() * T.q).squaredNorm();
+    said_shift2 += material_.camera_errors[i].topRows<3>().squaredNorm() / kErrorDraws;
+    said_turn2 += material_.camera_errors[i].bottomRows<3>().squaredNorm() / kErrorDraws;
+  }
+  // one flight: its error as a whole may be half or twice of what is usual
+  EXPECT_GT(said_shift2, shift2 / 4);
+  EXPECT_LT(said_shift2, shift2 * 4);
+  EXPECT_GT(said_turn2, turn2 / 4);
+  EXPECT_LT(said_turn2, turn2 * 4);
+}
+
 TEST_F(BatchRefinementTest, ACancelledRefinementLeavesPosesAndEstimatesLandmarks) {
   for (const double when : {0.0, 0.25, 0.7}) {  // at the start, within a round, when lines are merged
     MapMaterial refused = material_, prepared = material_;

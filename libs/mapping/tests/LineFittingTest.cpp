@@ -75,7 +75,7 @@ TEST_F(LineFittingTest, SigmasSayWhatTheMotionLeavesOpen) {
 TEST_F(LineFittingTest, SigmaOfTheDepthIsThatOfTheParallax) {
   // Two views 0.5 m apart of an upright line at depth z: sigma_z = z^2 sigma_px / (f 0.5) * sqrt(2) / sqrt(2 ends) …
   LineRecord line = lineOf(material_, 1, {{0.25, -1, 4}, {0.25, 1, 4}}, 0, 1);
-  params_.systematic_px = 0;
+  params_.systematic = 0;
   ASSERT_TRUE(fit(line));
   const double expected = 16.0 / (458 * 0.5);  // z^2 / (f b), times sqrt(2 views / 2 ends)
   EXPECT_NEAR(line.estimate.sigmaPosition(0), expected, 0.15 * expected);

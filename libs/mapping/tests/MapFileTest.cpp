@@ -56,6 +56,12 @@ LineMap sampleMap() {
   map.lines[4].segment_w.start = {std::numeric_limits<double>::denorm_min(), 1e308, 0.1};
   map.lines[4].id = ~std::uint64_t{0};
   map.groups = {{"vertical", {0, 0, 1}, 0.01}, {"", vec(), -1}};
+  for (int c = 0; c < 4; ++c)
+    for (int r = 0; r < 4; ++r) map.lines[5].covariance(r, c) = 0.1f * static_cast<float>(r + c);
+  map.camera_errors.assign(map.keyframes.size(), CameraErrors::Constant(0.25f));
+  map.camera_errors[3](5, kErrorDraws - 1) = -1e-4f;
+  map.corners = {{vec(), 0.01, {101, 102}}, {vec(), 0.02, {103, 104, 105}}};
+  map.planes = {{"floor", {0, 0, 1}, -0.5, 0.003, {101, 102, 103}, {4, 5}}, {"wall 1", vec(), 2, 0.004, {107}, {}}};
   for (int i = 0; i < 30; ++i) map.trajectory.emplace_back(1403636579763555584 + i, pose());
   map.time_offset_s = -0.0031;
   map.recordings = {"MH_01_easy", ""};
@@ -117,6 +123,19 @@ TEST_F(MapFile, EveryValueReturnsToTheBit) {
   EXPECT_EQ(back.groups[0].name, "vertical");
   EXPECT_EQ(back.groups[1].direction_w, map.groups[1].direction_w);
   EXPECT_EQ(back.groups[1].spread_rad, -1);
+  EXPECT_EQ(back.lines[5].covariance, map.lines[5].covariance);
+  EXPECT_TRUE(back.lines[6].covariance.isZero(0));
+  EXPECT_EQ(back.camera_errors, map.camera_errors);
+  ASSERT_EQ(back.corners.size(), 2u);
+  EXPECT_EQ(back.corners[1].p_w, map.corners[1].p_w);
+  EXPECT_EQ(back.corners[1].sigma_m, 0.02);
+  EXPECT_EQ(back.corners[1].lines, map.corners[1].lines);
+  ASSERT_EQ(back.planes.size(), 2u);
+  EXPECT_EQ(back.planes[0].name, "floor");
+  EXPECT_EQ(back.planes[0].offset_m, -0.5);
+  EXPECT_EQ(back.planes[1].normal_w, map.planes[1].normal_w);
+  EXPECT_EQ(back.planes[0].points, map.planes[0].points);
+  EXPECT_EQ(back.planes[1].lines, map.planes[1].lines);
   EXPECT_EQ(back.trajectory[29].second.p, map.trajectory[29].second.p);
   EXPECT_EQ(back.time_offset_s, -0.0031);
   EXPECT_EQ(back.recordings, map.recordings);

@@ -4,6 +4,7 @@
 #include <cstdio>
 
 #include "lintel/mapping/LineSpacing.h"
+#include "lintel/mapping/MapStructure.h"
 #include "lintel/pipeline/RunCosts.h"
 
 namespace lintel {
@@ -149,6 +150,7 @@ void EstimationStage::finishMap(const FinishOptions& options) {
   result_.map.configuration = writeConfiguration(configuration_);
   keepForMerging(material);
   result_.lines_beside = spaceLines(configuration_.map, result_.map);
+  findStructure(result_.map);
 }
 
 /// A place is recognised by views, and the poses of two flights are adjusted with the IMU between them.

@@ -8,6 +8,7 @@
 
 #include "lintel/mapping/LineSpacing.h"
 #include "lintel/mapping/MapBuilder.h"
+#include "lintel/mapping/MapStructure.h"
 
 namespace lintel {
 
@@ -52,6 +53,7 @@ std::size_t takePoses(const PosesInTime& poses, MapMaterial& material) {
   if (kept.size() < 2) throw PosesError("fewer than two keyframes of the map have a pose");
   for (RetiredKeyframe& keyframe : kept) keyframe.imu.reset();
   material.keyframes = std::move(kept);
+  material.camera_errors.clear();  // these poses are taken as they are
   material.trajectory = poses;
   material.pieces.clear();
   forget(gone, material.points);
@@ -113,6 +115,7 @@ MapDensification densifyMap(const LineMap& map, Recording& recording, const MapD
   settleLines(params, material);
   result.map = drawMap(params, material);
   spaceLines(params, result.map);
+  findStructure(result.map);
   result.map.configuration = map.configuration;
   result.map.source = map.source;
   result.map.recordings = map.recordings;

@@ -106,6 +106,12 @@ class BatchRefinement {
                           const std::vector<PointJoin>& joins = {}) const;
 
  private:
+  /// Which landmarks take part in the adjustment.
+  struct Used {
+    std::vector<bool> points, lines;
+  };
+  Used usedOf(const MapMaterial& material) const;
+  std::vector<CameraErrors> errorsOf(MapMaterial& material) const;
   RefinementReport adjust(MapMaterial& material, const RefinementProgress& progress,
                           const std::vector<PointJoin>& joins) const;
 

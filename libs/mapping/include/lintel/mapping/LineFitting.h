@@ -11,8 +11,7 @@ struct LineFitParams {
   double loss_width = 1.5;    ///< Cauchy, in standard deviations of a view
   double max_error_px = 3.0;  ///< an end farther from the projected line makes its view an outlier
   double min_depth_m = 0.1;
-  double systematic_px =
-      0.3;  ///< error that all views of a line have in common (a shaded or round edge), for its sigmas
+  double systematic = 0.3;  ///< error that all views of a line have in common (a shaded or round edge), in their sigmas
 };
 
 /// Estimates a line from all its views with fixed cameras: start from the planes through camera and view (or from the

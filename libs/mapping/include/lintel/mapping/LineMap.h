@@ -11,6 +11,7 @@
 #include "lintel/core/Rig.h"
 #include "lintel/geometry/Pose.h"
 #include "lintel/geometry/Segment.h"
+#include "lintel/mapping/ErrorDraws.h"
 #include "lintel/mapping/MapPieces.h"
 
 namespace lintel {
@@ -50,6 +51,10 @@ struct MapLineObservation {
   Eigen::Vector2d start_px = Eigen::Vector2d::Zero(), end_px = Eigen::Vector2d::Zero();  ///< raw (distorted) pixels
 };
 
+/// Covariance of a line's position [m] and direction [rad] in the two directions across it, tangentBasis(direction), at
+/// its middle: by the errors of its views alone. Zero: not known.
+using LineCovariance = Eigen::Matrix<float, 4, 4, Eigen::DontAlign>;
+
 /// A finite 3D line segment with its uncertainty and provenance.
 struct MapLine {
   std::uint64_t id = 0;
@@ -62,6 +67,7 @@ struct MapLine {
   bool mapped = false;                           ///< found in images with the poses known; false: tracked
   int group = -1;                                ///< place in LineMap::groups, -1 = none
   std::vector<MapLineObservation> observations;  ///< ascending keyframe id
+  LineCovariance covariance = LineCovariance::Zero();
 };
 
 /// Lines that are parallel: a vanishing direction of the scene.
@@ -69,6 +75,22 @@ struct MapGroup {
   std::string name;                                        ///< "vertical", "horizontal 1", "slanted 1", …
   Eigen::Vector3d direction_w = Eigen::Vector3d::UnitX();  ///< unit; the sign means nothing
   double spread_rad = 0;                                   ///< RMS angle of the members, weighted by length
+};
+
+/// Where lines meet.
+struct MapCorner {
+  Eigen::Vector3d p_w = Eigen::Vector3d::Zero();  ///< [m]
+  double sigma_m = 0;                             ///< standard deviation, worst way, by the lines' views alone
+  std::vector<std::uint64_t> lines;               ///< ids, ascending; at least two
+};
+
+/// A plane that lines of different directions lie in: n . p = offset.
+struct MapPlane {
+  std::string name;  ///< "floor", "ceiling", "wall 1", else "horizontal 1", "vertical 1", "slanted 1", …
+  Eigen::Vector3d normal_w = Eigen::Vector3d::UnitZ();  ///< unit, to the side that the cameras are on
+  double offset_m = 0;
+  double spread_m = 0;                       ///< RMS distance of the lines' ends
+  std::vector<std::uint64_t> lines, points;  ///< ids, ascending
 };
 
 /// What an image looked like, to find the place again. Tracks are ids of the map's points.
@@ -91,6 +113,9 @@ struct LineMap {
   std::vector<MapPiece> pieces;                           ///< ascending first keyframe; empty: there is one
   std::vector<std::string> recordings;                    ///< names, of a map of several; pieces say which is whose
   std::vector<MapView> views;                             ///< ascending piece and time; none where they are not kept
+  std::vector<MapCorner> corners;                         ///< in the order of their first lines
+  std::vector<MapPlane> planes;                           ///< the longest lines in sum first
+  std::vector<CameraErrors> camera_errors;                ///< of the keyframes, in their order; empty: not known
   std::vector<std::pair<std::int64_t, Pose>> trajectory;  ///< (t_ns, T_w_b) of every frame, ascending within a piece
 };
 

@@ -9,6 +9,7 @@
 
 #include "lintel/core/Rig.h"
 #include "lintel/estimator/WindowUpdate.h"
+#include "lintel/mapping/ErrorDraws.h"
 #include "lintel/mapping/MapPieces.h"
 
 namespace lintel {
@@ -81,10 +82,11 @@ struct LineRecord {
 /// What a run collects for the map: all keyframes, points and lines with their views, and the causal trajectory.
 /// Its size grows with the observations of keyframes.
 struct MapMaterial {
-  Rig rig;                                 ///< calibration that the poses belong to
-  double time_offset_s = 0;                ///< an image with stamp t shows the world at t + offset
-  std::vector<RetiredKeyframe> keyframes;  ///< ascending id and time
-  std::vector<MapPiece> pieces;            ///< ascending; empty: the IMU leads through all keyframes, or none is known
+  Rig rig;                                  ///< calibration that the poses belong to
+  double time_offset_s = 0;                 ///< an image with stamp t shows the world at t + offset
+  std::vector<RetiredKeyframe> keyframes;   ///< ascending id and time
+  std::vector<MapPiece> pieces;             ///< ascending; empty: the IMU leads through all keyframes, or none is known
+  std::vector<CameraErrors> camera_errors;  ///< of the keyframes, in their order; empty: not known
   std::vector<PointRecord> points;
   std::vector<LineRecord> lines;
   std::vector<std::pair<std::int64_t, Pose>> trajectory;  ///< (t_ns, T_w_b) of every frame with a pose, ascending
