@@ -114,6 +114,9 @@ TEST_F(LintelEvalProgram, AlignsTheMapByItsOwnTrajectory) {
   EXPECT_NEAR(json["lines"]["recall"][0], 0.5, 1e-9);
   EXPECT_NEAR(json["lines"]["all_matched"]["distance_median_m"], 0.03, 1e-9);
   EXPECT_THAT(out_.str(), HasSubstr("map alignment   se3 by 5 poses"));
+  EXPECT_EQ(json["line_sigmas"]["near_an_edge"]["tracked"]["ends"], 4);
+  EXPECT_EQ(json["line_sigmas"]["edge_seen"]["tracked"]["ends"], 0) << "no keyframe saw them";
+  EXPECT_THAT(out_.str(), HasSubstr("ends within 1 and 2 sigmas"));
 
   ASSERT_EQ(run({"--map", path("map.lintel"), "--lines", path("mav0/lines0/data.csv"), "--align", "none"}), 0);
   EXPECT_THAT(out_.str(), HasSubstr("map alignment   none"));
