@@ -30,11 +30,6 @@ class ByteWriter {
     std::memcpy(&bits, &v, 8);
     u64(bits);
   }
-  void f32(float v) {
-    std::uint32_t bits;
-    std::memcpy(&bits, &v, 4);
-    u32(bits);
-  }
   void vec2(const Eigen::Vector2d& v) { f64(v.x()), f64(v.y()); }
   void vec3(const Eigen::Vector3d& v) { f64(v.x()), f64(v.y()), f64(v.z()); }
   void pose(const Pose& T) { f64(T.q.w()), f64(T.q.x()), f64(T.q.y()), f64(T.q.z()), vec3(T.p); }
@@ -80,12 +75,6 @@ class ByteReader {
     const std::uint64_t bits = u64();
     double v;
     std::memcpy(&v, &bits, 8);
-    return v;
-  }
-  float f32() {
-    const std::uint32_t bits = u32();
-    float v;
-    std::memcpy(&v, &bits, 4);
     return v;
   }
   Eigen::Vector2d vec2() {
