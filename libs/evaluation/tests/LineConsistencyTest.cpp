@@ -10,7 +10,7 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr double kSigma_m = 0.01;
+constexpr double kEndSigma_m = 0.01;
 
 /// A camera at the origin of each keyframe's body that looks along y, and an edge along x five metres away.
 class LineConsistencyTest : public ::testing::Test {
@@ -35,7 +35,7 @@ class LineConsistencyTest : public ::testing::Test {
   void addLine(const Vector3d& off, const Segment3& shown) {
     MapLine line;
     line.segment_w = {shown.start + off, shown.end + off};
-    line.sigma_distance_m = kSigma_m;
+    line.sigma_distance_m = kEndSigma_m;
     for (const MapKeyframe& keyframe : map_.keyframes) {
       const Pose T_c_w = (keyframe.T_w_b * map_.rig.T_b_c).inverse();
       line.observations.push_back(
@@ -53,10 +53,10 @@ class LineConsistencyTest : public ::testing::Test {
 };
 
 TEST_F(LineConsistencyTest, EndsCountByTheirSigmas) {
-  addLine({0, 0.5 * kSigma_m, 0}, edge_);
-  addLine({0, 1.5 * kSigma_m, 0}, edge_);
-  addLine({0, 0, -1.5 * kSigma_m}, edge_);
-  addLine({0, 5 * kSigma_m, 0}, edge_);
+  addLine({0, 0.5 * kEndSigma_m, 0}, edge_);
+  addLine({0, 1.5 * kEndSigma_m, 0}, edge_);
+  addLine({0, 0, -1.5 * kEndSigma_m}, edge_);
+  addLine({0, 5 * kEndSigma_m, 0}, edge_);
   for (const SigmaShares& shares : {consistency().near.tracked, consistency().seen.tracked}) {
     EXPECT_EQ(shares.ends, 8u);
     EXPECT_DOUBLE_EQ(shares.within_1, 0.25);

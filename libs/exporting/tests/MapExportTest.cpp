@@ -345,11 +345,15 @@ TEST_P(EveryFormat, IsTheSameFromRunToRun) {
 
 TEST_P(EveryFormat, TakesAnEmptyMapAndASingleLine) {
   exportMap({}, map());
-  if (linesOf(1) == 1) EXPECT_GT(whole().size(), 40u);
+  if (linesOf(1) == 1) {
+    EXPECT_GT(whole().size(), 40u);
+  }
   LineMap one;
   addLine(one, {0, 0, 0}, {0, 0, 1}, -1);
   EXPECT_EQ(exportMap(one, map()).lines, linesOf(1));
-  if (linesOf(1) == 1) EXPECT_GT(whole().size(), GetParam() == "simplemap" ? 40u : 100u);  // it holds keyframes: none
+  if (linesOf(1) == 1) {
+    EXPECT_GT(whole().size(), GetParam() == "simplemap" ? 40u : 100u);  // it holds keyframes: none
+  }
 }
 
 TEST_P(EveryFormat, ReportsAFullDiskAndLeavesNoFile) {

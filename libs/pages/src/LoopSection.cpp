@@ -19,7 +19,7 @@ constexpr std::size_t kMostRows = 40;
 struct Visit {
   std::int64_t earlier_first_ns, earlier_last_ns, later_first_ns, later_last_ns;
   int pairs = 0, most_points = 0;
-  std::vector<double> before_m, after_m, turned_rad;
+  std::vector<double> before_m{}, after_m{}, turned_rad{};
 
   bool continues(const PlacePair& pair) const {
     return pair.later_ns - later_last_ns <= kSameVisit_ns && pair.earlier_ns >= earlier_first_ns - kSameVisit_ns &&
