@@ -11,7 +11,7 @@ namespace {
 
 constexpr double kSpan_s = 2, kLeast_s = 0.25;
 constexpr double kHidden = 3;  // how much more white noise there may be than the samples show
-constexpr double kVibrationShare = 0.1;
+constexpr double kVibrationShare = 0.15;
 constexpr double kScaleError = 0.002;
 constexpr double kScaleErrorLasts_s = 1;
 

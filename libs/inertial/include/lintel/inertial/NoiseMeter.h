@@ -42,7 +42,7 @@ class NoiseMeter {
 /// The densities to integrate with, for what a data sheet says and what the samples show:
 /// - white noise: as given, where it lies between what sensors can do and three times what was measured at the
 ///   quietest (a filter in the sensor may hide as much);
-/// - vibration: periodic, so that most of it integrates to nothing; a tenth stays (by the errors of
+/// - vibration: periodic, so that most of it integrates to nothing; 0.15 stay (by the errors of
 ///   the flights of doc/benchmarks.md);
 /// - what calibration leaves in scale and alignment of a MEMS sensor's axes, 0.2 % of the motion, lasting a second.
 /// Walks are given bounds of what sensors do.
