@@ -2,6 +2,7 @@
 #include "window/WindowCovariance.h"
 
 #include <Eigen/Cholesky>
+#include <Eigen/Eigenvalues>
 #include <algorithm>
 
 #include "lintel/geometry/Rotation.h"
@@ -64,6 +65,12 @@ const Eigen::MatrixXd& WindowCovariance::halvesOfDrift(const SlidingWindow& wind
   return halves_of_drift_ = halves(F);
 }
 
+Eigen::Matrix4d WindowCovariance::independentDrift(const SlidingWindow& window) const {
+  const Eigen::MatrixXd& half = halvesOfDrift(window);
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix4d> own(window.drift.covariance - half.transpose() * half);
+  return own.eigenvectors() * own.eigenvalues().cwiseMax(0).asDiagonal() * own.eigenvectors().transpose();
+}
+
 StateCovariance WindowCovariance::start(SlidingWindow& window, FrameId first) const {
   const WindowFrame &oldest = window.frames.front(), &frame = window.frame(first);
   WorldDrift drift;
@@ -93,10 +100,8 @@ StateCovariance WindowCovariance::of(const SlidingWindow& window, const WindowFr
   place(poseOf(window.frames.front()), -N.bottomRows<kMotionSize>() * held, of_motion);
   Eigen::MatrixXd half(marginals_.size(), kStateTangent);
   half << halves(of_pose), halves(of_motion);  // motions come first in the equations: more to solve for
-  StateCovariance covariance = half.transpose() * half;
-  covariance += N * window.drift.covariance * N.transpose();
-  const StateCovariance crossed = half.transpose() * halvesOfDrift(window) * N.transpose();
-  return covariance + crossed + crossed.transpose();
+  half += halvesOfDrift(window) * N.transpose();
+  return half.transpose() * half + N * independentDrift(window) * N.transpose();
 }
 
 void WindowCovariance::holdNext(SlidingWindow& window) const {
@@ -104,9 +109,8 @@ void WindowCovariance::holdNext(SlidingWindow& window) const {
   Eigen::MatrixXd F = Eigen::MatrixXd::Zero(marginals_.size(), 4);
   place(poseOf(next), gaugeOf(next), F);
   place(poseOf(oldest), -gaugeOf(oldest), F);
-  const Eigen::MatrixXd half = halves(F);
-  const Eigen::Matrix4d crossed = halvesOfDrift(window).transpose() * half;
-  window.drift.covariance += half.transpose() * half + crossed + crossed.transpose();
+  const Eigen::MatrixXd half = halves(F) + halvesOfDrift(window);
+  window.drift.covariance = independentDrift(window) + half.transpose() * half;
 }
 
 void WindowCovariance::forget(SlidingWindow& window, FrameId leaving) const {

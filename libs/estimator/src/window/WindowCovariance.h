@@ -57,6 +57,10 @@ class WindowCovariance {
   /// L^-1 F' of the drift, with the oldest frame held.
   const Eigen::MatrixXd& halvesOfDrift(const SlidingWindow& window) const;
 
+  /// Covariance of w, the part of the drift that the window's states say nothing about. Where information is lost
+  /// (images that go dark) these become less certain than the drift was: then it is zero along such a direction.
+  Eigen::Matrix4d independentDrift(const SlidingWindow& window) const;
+
   NormalEquations information_;
   Marginals marginals_;
   mutable std::optional<FrameId> drift_of_;  // the oldest frame that halves_of_drift_ belongs to

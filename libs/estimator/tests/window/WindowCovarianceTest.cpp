@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <Eigen/Eigenvalues>
 #include <algorithm>
 
 #include "DenseReference.h"
@@ -154,6 +155,23 @@ TEST_F(WindowCovarianceTest, AFirstPoseThatIsNoKeyframeIsRememberedByTheOthers) 
   const double sigma = std::sqrt(expected(0, 0)), after = std::sqrt(found(0, 0));
   EXPECT_GT(after, 0.9 * sigma);
   EXPECT_LT(after, 5 * sigma) << "their errors are correlated, and that is not forgotten";
+}
+
+/// As after images that went dark: the states are less certain than they were when the drift was accumulated.
+TEST_F(WindowCovarianceTest, NoVarianceIsNegativeWhereInformationIsLost) {
+  WindowFactors factors(window_, kParams.factors);
+  addAll(factors);
+  const WindowCovariance window = covariance(factors.factors());
+  window.start(window_, window_.frames[5].id);
+  window_.drift.covariance *= 0.01;
+  for (int steps = 0; steps < 2; ++steps) {
+    for (const WindowFrame& frame : window_.frames) {
+      const StateCovariance P = window.of(window_, frame);
+      const Eigen::SelfAdjointEigenSolver<StateCovariance> own(P);
+      EXPECT_GT(own.eigenvalues().minCoeff(), -1e-9 * own.eigenvalues().maxCoeff());
+    }
+    window.holdNext(window_);
+  }
 }
 
 }  // namespace
