@@ -302,8 +302,9 @@ void Estimator::Impl::solve(WindowUpdate& update) {
   rejectOutliers(window_, params_.landmarks);
   for (auto& [id, track] : window_.lines)
     if (entersProblem(track, params_.degeneracy)) updateLineUncertainty(window_, params_, track);
+  const CameraPoses poses(window_);
   for (auto& [id, track] : window_.points)
-    if (track.triangulated) updatePointUncertainty(window_, params_.factors.point_sigma_px, track);
+    if (track.triangulated) updatePointUncertainty(poses, params_.factors.point_sigma_px, track);
   for (std::size_t i = 1; i < window_.frames.size(); ++i) {
     WindowFrame& frame = window_.frames[i];
     const ImuBias bias = biasOf(window_.frames[i - 1].motion.data());

@@ -23,20 +23,34 @@ RayObservation linearised(const Camera& camera, const Eigen::Vector2d& normalise
   return o;
 }
 
-/// How the Jacobian of the distortion at an observation, of a fixed pixel, moves with component `k` of the correction:
-/// directly (k1 k2), and because the observation moves. Differences of a smooth function, exact to 1e-8.
-Eigen::Matrix2d distortJacobianChange(const Camera& camera, const RayObservation& o, int k) {
-  constexpr double kStep = 1e-4;
-  const auto jacobian = [&](double by) {
-    Camera moved = camera;
-    if (k == 4) moved.lens[0] += by;
-    if (k == 5) moved.lens[1] += by;
-    return moved.distortJacobian(o.ray.head<2>() + by * o.correction_jacobian.col(k));
-  };
-  const double unit = std::max(1.0, o.correction_jacobian.col(k).norm());
-  const double step = kStep / unit;
-  return (jacobian(step) - jacobian(-step)) / (2 * step);
-}
+/// How the Jacobian of the distortion at an observation, of a fixed pixel, moves with the correction: directly (k1 k2),
+/// and because the observation moves. Differences of a smooth function, exact to 1e-8.
+class DistortJacobianChange {
+ public:
+  DistortJacobianChange(const Camera& camera, const RayObservation& o) : by_correction_(o.correction_jacobian) {
+    constexpr double kStep = 1e-4;
+    const Eigen::Vector2d at = o.ray.head<2>();
+    for (int i = 0; i < 2; ++i) {
+      const Eigen::Vector2d step = kStep * Eigen::Vector2d::Unit(i);
+      by_place_[i] = (camera.distortJacobian(at + step) - camera.distortJacobian(at - step)) / (2 * kStep);
+      Camera more = camera, less = camera;
+      more.lens[static_cast<std::size_t>(i)] += kStep;
+      less.lens[static_cast<std::size_t>(i)] -= kStep;
+      by_lens_[i] = (more.distortJacobian(at) - less.distortJacobian(at)) / (2 * kStep);
+    }
+  }
+
+  /// With component `k`.
+  Eigen::Matrix2d by(int k) const {
+    Eigen::Matrix2d change = by_correction_(0, k) * by_place_[0] + by_correction_(1, k) * by_place_[1];
+    if (k >= 4) change += by_lens_[k - 4];
+    return change;
+  }
+
+ private:
+  const ObservationJacobian& by_correction_;
+  Eigen::Matrix2d by_place_[2], by_lens_[2];
+};
 
 /// With J = d pixel / d normalised and the unit normal n of a line, a distance h across it is h / |J^-T n| pixels.
 LineEnd makeLineEnd(const Camera& camera, const Eigen::Vector2d& normalised, const Eigen::Vector2d& normal) {
@@ -46,8 +60,9 @@ LineEnd makeLineEnd(const Camera& camera, const Eigen::Vector2d& normalised, con
   const Eigen::Matrix2d D = camera.distortJacobian(normalised), J_inverse = (F * D).inverse();
   const Eigen::Vector2d v = J_inverse.transpose() * normal, w = J_inverse * v;
   end.linearised_scale_px = 1 / v.norm();
+  const DistortJacobianChange change(camera, end);
   for (int k = 0; k < kIntrinsicsSize; ++k) {
-    Eigen::Matrix2d dJ = F * distortJacobianChange(camera, end, k);
+    Eigen::Matrix2d dJ = F * change.by(k);
     if (k < 2) dJ.row(k) += D.row(k);  // fx fy
     end.log_scale_jacobian[k] = v.dot(dJ * w) / v.squaredNorm();
   }
@@ -163,16 +178,15 @@ void fitWideEnds(const Camera& calibrated, const Camera& camera, const Eigen::Ve
   }
 }
 
-/// The same on the plane z = 1.
-void fitEnds(const Camera& calibrated, const Camera& camera, const Eigen::Vector2d& start_px,
-             const Eigen::Vector2d& end_px, const Eigen::Vector2d& normal, std::pair<LineEnd, LineEnd>& ends) {
-  const Eigen::Vector2d a = calibrated.normalise(start_px), b = calibrated.normalise(end_px);
+/// The same on the plane z = 1. `a`, `b`: the ends as the calibrated camera sees them.
+void fitEnds(const Camera& calibrated, const Camera& camera, const Eigen::Vector2d& a, const Eigen::Vector2d& b,
+             const Eigen::Vector2d& normal, std::pair<LineEnd, LineEnd>& ends) {
   const Eigen::Vector3d across(normal.x(), normal.y(), 0);
   const double line = across.dot(ends.first.ray);
   RayObservation samples[kSamples];
   for (int i = 0; i < kSamples; ++i) {
     const Eigen::Vector2d at = (a + b) / 2 + kNodes[i] * (b - a) / 2;
-    samples[i] = linearised(camera, camera.normalise(calibrated.project(at.homogeneous())));
+    samples[i] = linearised(camera, camera.normalise(calibrated.project(at.homogeneous()), at));
   }
   for (LineEnd* end : {&ends.first, &ends.second}) {
     double offset = -line;
@@ -205,10 +219,11 @@ std::pair<LineEnd, LineEnd> makeLineEnds(const Camera& calibrated, const Eigen::
     ends.first.linearised_at = ends.second.linearised_at = correction;
     return ends;
   }
-  const Eigen::Vector2d start = camera.normalise(start_px), end = camera.normalise(end_px);
+  const Eigen::Vector2d a = calibrated.normalise(start_px), b = calibrated.normalise(end_px);
+  const Eigen::Vector2d start = camera.normalise(start_px, a), end = camera.normalise(end_px, b);
   const Eigen::Vector2d along = (end - start).normalized(), normal(-along.y(), along.x());
   std::pair<LineEnd, LineEnd> ends{makeLineEnd(camera, start, normal), makeLineEnd(camera, end, normal)};
-  fitEnds(calibrated, camera, start_px, end_px, normal, ends);
+  fitEnds(calibrated, camera, a, b, normal, ends);
   ends.first.linearised_at = ends.second.linearised_at = correction;
   return ends;
 }

@@ -28,16 +28,6 @@ ImuBias biasOf(const double* motion) {
   return {Eigen::Vector3d::Map(motion + kBiasGyroAt), Eigen::Vector3d::Map(motion + kBiasAccelAt)};
 }
 
-Camera correctedCamera(Camera camera, const double* correction) {
-  camera.fx += correction[0];
-  camera.fy += correction[1];
-  camera.cx += correction[2];
-  camera.cy += correction[3];
-  camera.lens[0] += correction[4];
-  camera.lens[1] += correction[5];
-  return camera;
-}
-
 Eigen::Matrix<double, 4, 3> rotationPlus(const Eigen::Quaterniond& q) {
   Eigen::Matrix<double, 4, 3> M;
   const double h = 0.5;

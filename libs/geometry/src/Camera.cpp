@@ -73,8 +73,8 @@ Eigen::Matrix2d Camera::coefficientJacobian(const Eigen::Vector2d& n) const {
   return J;
 }
 
-Eigen::Vector2d Camera::undistort(const Eigen::Vector2d& wanted) const {
-  Eigen::Vector2d n = wanted, invertible = Eigen::Vector2d::Zero();
+Eigen::Vector2d Camera::undistort(const Eigen::Vector2d& wanted, const Eigen::Vector2d& near) const {
+  Eigen::Vector2d n = near, invertible = Eigen::Vector2d::Zero();
   for (int i = 0; i < 40; ++i) {
     const Radial radial(*this, n.squaredNorm());
     const Eigen::Vector2d error = distorted(*this, n, radial) - wanted;
@@ -97,6 +97,10 @@ Eigen::Vector2d Camera::toPixel(const Eigen::Vector2d& normalised) const {
 
 Eigen::Vector2d Camera::normalise(const Eigen::Vector2d& px) const {
   return undistort({(px.x() - cx) / fx, (px.y() - cy) / fy});
+}
+
+Eigen::Vector2d Camera::normalise(const Eigen::Vector2d& px, const Eigen::Vector2d& near) const {
+  return undistort({(px.x() - cx) / fx, (px.y() - cy) / fy}, near);
 }
 
 bool Camera::unproject(const Eigen::Vector2d& px, Eigen::Vector3d& ray) const {

@@ -182,10 +182,11 @@ std::string Initializer::tryMoving(const Eigen::Vector3d& bias_gyro, SlidingWind
 
 double Initializer::misfitOf(SlidingWindow& window) const {
   const double limit = params_.landmarks.point_max_error_px, sigma = params_.factors.point_sigma_px;
+  const CameraPoses poses(window);
   double sum = 0;
   for (const auto& [id, track] : window.points) {
     if (static_cast<int>(track.sightings.size()) < params_.landmarks.point_min_observations) continue;
-    const double error = track.triangulated ? std::min(limit, reprojectionError(window, track)) : limit;
+    const double error = track.triangulated ? std::min(limit, reprojectionError(poses, track)) : limit;
     sum += static_cast<double>(track.sightings.size()) * error * error / (sigma * sigma);
   }
   WindowFactors factors(window, params_.factors);
@@ -223,8 +224,9 @@ bool Initializer::adjust(SlidingWindow& window) const {
     if (frozen.refine_time_offset) factors.addCalibrationPriors(frozen, T_b_c_calibrated_);
     solveWindow(window, factors.factors(), frozen, {20});
     loose.point_max_error_px = round == 0 ? 8 * scale : params_.landmarks.point_max_error_px;
+    const CameraPoses poses(window);
     for (auto& [id, track] : window.points)
-      if (track.triangulated && reprojectionError(window, track) > loose.point_max_error_px) track.triangulated = false;
+      if (track.triangulated && reprojectionError(poses, track) > loose.point_max_error_px) track.triangulated = false;
     for (WindowFrame& frame : window.frames)
       if (frame.imu) frame.imu->repropagate(biasOf(frame.motion.data()));
     if (round == 0 && !scaleWithin(kHopelessAfterFirst, window)) return false;
@@ -234,12 +236,13 @@ bool Initializer::adjust(SlidingWindow& window) const {
 
 std::string Initializer::verify(SlidingWindow& window) const {
   const InitializerParams& p = params_.initializer;
+  const CameraPoses poses(window);
   std::vector<double> errors;
   int candidates = 0;
   for (const auto& [id, track] : window.points) {
     if (static_cast<int>(track.sightings.size()) < params_.landmarks.point_min_observations) continue;
     ++candidates;
-    if (track.triangulated) errors.push_back(reprojectionError(window, track));
+    if (track.triangulated) errors.push_back(reprojectionError(poses, track));
   }
   if (errors.size() < 20 || static_cast<double>(errors.size()) < 0.6 * candidates)
     return "too few points agree with the motion";

@@ -3,7 +3,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <deque>
 #include <limits>
+#include <vector>
 
 #include "landmarks/LineDegeneracy.h"
 #include "lintel/factors/StructuralFactor.h"
@@ -20,51 +22,70 @@ struct KnownDirection {
   double sigma_rad;
 };
 
-/// Normal equations of one line, poses and calibration fixed.
-NormalEquations4 normalEquations(const SlidingWindow& window, const FactorParams& params, const LineTrack& track,
-                                 const LineBlock& line, const KnownDirection* known = nullptr) {
-  NormalEquations4 normal;
-  const ceres::CauchyLoss loss(params.line_loss_width);
-  RowMajorMatrix plus(kLineSize, kLineTangent);
-  LineManifold().PlusJacobian(line.data(), plus.data());
-  for (const LineSighting& s : track.sightings) {
-    const LineFactor factor(s.start, s.end, window.frame(s.frame).bodyMotion(), track.origin_w,
-                            params.line_sigma_px * s.sigma_px);
-    const double* blocks[] = {window.frame(s.frame).pose.data(), window.extrinsics.data(), window.correction.data(),
-                              line.data()};
-    Eigen::Vector2d r;
-    Eigen::Matrix<double, 2, kLineSize, Eigen::RowMajor> J_ambient;
-    double* jacobians[] = {nullptr, nullptr, nullptr, J_ambient.data()};
-    factor.Evaluate(blocks, r.data(), jacobians);
-    double rho[3];
-    loss.Evaluate(r.squaredNorm(), rho);
-    const Eigen::Matrix<double, 2, 4> J = J_ambient * plus;
-    normal.add(J, r, rho[1]);
-    normal.cost += 0.5 * rho[0];
+CameraView viewOf(const SlidingWindow& window, FrameId id) {
+  const WindowFrame& frame = window.frame(id);
+  return {frame.pose.data(), window.extrinsics.data(), window.correction.data(), frame.bodyMotion(), false};
+}
+
+/// The residuals of one line, poses and calibration fixed.
+class LineResiduals {
+ public:
+  LineResiduals(const SlidingWindow& window, const FactorParams& params, const LineTrack& track)
+      : correction_(window.correction.data()), loss_(params.line_loss_width) {
+    for (const LineSighting& s : track.sightings) {
+      factors_.emplace_back(s.start, s.end, FrameMotion{}, track.origin_w, params.line_sigma_px * s.sigma_px);
+      views_.push_back(viewOf(window, s.frame));
+    }
   }
-  if (known) {
-    const double* blocks[] = {line.data(), known->d_w.data()};
+
+  /// Normal equations of the line.
+  NormalEquations4 linearise(const LineBlock& line) const {
+    NormalEquations4 normal;
+    LineLinearisation l;
+    for (std::size_t i = 0; i < factors_.size(); ++i) {
+      factors_[i].linearise(views_[i], correction_, line.data(), true, l);
+      double rho[3];
+      loss_.Evaluate(l.residual.squaredNorm(), rho);
+      normal.add(l.d_target, l.residual, rho[1]);
+      normal.cost += 0.5 * rho[0];
+    }
+    return normal;
+  }
+
+  /// With its direction known.
+  NormalEquations4 linearise(const LineBlock& line, const KnownDirection& known) const {
+    NormalEquations4 normal = linearise(line);
+    const double* blocks[] = {line.data(), known.d_w.data()};
     Eigen::Vector3d r;
     Eigen::Matrix<double, 3, kLineSize, Eigen::RowMajor> J_ambient;
     double* jacobians[] = {J_ambient.data(), nullptr};
-    SharedDirectionFactor(1 / known->sigma_rad).Evaluate(blocks, r.data(), jacobians);
+    SharedDirectionFactor(1 / known.sigma_rad).Evaluate(blocks, r.data(), jacobians);
+    RowMajorMatrix plus(kLineSize, kLineTangent);
+    LineManifold().PlusJacobian(line.data(), plus.data());
     const Eigen::Matrix<double, 3, 4> J = J_ambient * plus;
     normal.H += J.transpose() * J;
     normal.b += J.transpose() * r;
     normal.cost += 0.5 * r.squaredNorm();
+    return normal;
   }
-  return normal;
-}
 
-void refine(const SlidingWindow& window, const FactorParams& params, LineTrack& track,
-            const KnownDirection* known = nullptr) {
+ private:
+  const double* correction_;
+  ceres::CauchyLoss loss_;
+  std::deque<LineFactor> factors_;
+  std::vector<CameraView> views_;
+};
+
+void refine(const LineResiduals& residuals, LineTrack& track, const KnownDirection* known = nullptr) {
   LevenbergParams levenberg;
   levenberg.damping = 1e-3;
   levenberg.max_damping = std::numeric_limits<double>::infinity();
   levenberg.absolute_damping = 1e-9;
   levenberg.min_relative_decrease = 1e-4;
   levenberg.max_iterations = 10;
-  const auto linearise = [&](const LineBlock& line) { return normalEquations(window, params, track, line, known); };
+  const auto linearise = [&](const LineBlock& line) {
+    return known ? residuals.linearise(line, *known) : residuals.linearise(line);
+  };
   const auto moved = [](const LineBlock& line, const Eigen::Vector4d& step) {
     LineBlock result;
     LineManifold().Plus(line.data(), step.data(), result.data());
@@ -74,11 +95,11 @@ void refine(const SlidingWindow& window, const FactorParams& params, LineTrack& 
 }
 
 /// The ends of a sighting on the line, in the camera's frame. How many of them are in front of it.
-int endsInCamera(const SlidingWindow& window, const LineTrack& track, const LineSighting& s,
+int endsInCamera(const SlidingWindow& window, const CameraView& view, const LineTrack& track, const LineSighting& s,
                  Eigen::Vector3d ends_c[2]) {
-  const Pose T_c_w = window.T_w_c(window.frame(s.frame)).inverse();
   const PluckerLine line = lineFromBlock(track.line.data()).plucker();
-  const Eigen::Vector3d d_c = T_c_w.q * line.d, p_c = T_c_w * (track.origin_w + line.nearestPoint());
+  const Eigen::Vector3d d_c = view.R_c_w * line.d;
+  const Eigen::Vector3d p_c = view.R_c_w * (track.origin_w + line.nearestPoint() - view.p_w_c);
   const PluckerLine line_c{p_c.cross(d_c), d_c};
   const Eigen::Vector3d seen[2] = {s.start.corrected(window.correction.data()),
                                    s.end.corrected(window.correction.data())};
@@ -96,8 +117,9 @@ struct SeenMiddle {
 SeenMiddle middleOf(const SlidingWindow& window, const LineTrack& track) {
   const LineSighting& newest = track.sightings.back();
   Eigen::Vector3d ends_c[2] = {Eigen::Vector3d::UnitZ(), Eigen::Vector3d::UnitZ()};
-  endsInCamera(window, track, newest, ends_c);
-  const Eigen::Vector3d middle_w = window.T_w_c(window.frame(newest.frame)) * (0.5 * (ends_c[0] + ends_c[1]));
+  const CameraView view = viewOf(window, newest.frame);
+  endsInCamera(window, view, track, newest, ends_c);
+  const Eigen::Vector3d middle_w = view.R_c_w.transpose() * (0.5 * (ends_c[0] + ends_c[1])) + view.p_w_c;
   const Eigen::Vector3d d_w = lineFromBlock(track.line.data()).plucker().d.normalized();
   const double depth_m =
       window.camera().wide() ? (0.5 * (ends_c[0] + ends_c[1])).norm() : 0.5 * (ends_c[0].z() + ends_c[1].z());
@@ -122,6 +144,17 @@ bool startFromPlanes(const SlidingWindow& window, LineTrack& track) {
   return true;
 }
 
+/// Sigmas and verdict of a line.
+void judgeBy(const LineResiduals& residuals, const SlidingWindow& window, const EstimatorParams& params,
+             LineTrack& track) {
+  const SeenMiddle middle = middleOf(window, track);
+  const LineUncertainty uncertainty =
+      uncertaintyOf(lineFromBlock(track.line.data()), residuals.linearise(track.line).H, middle.along_m);
+  track.sigma_direction_rad = uncertainty.direction_rad;
+  track.sigma_distance_m = uncertainty.distance_m;
+  track.verdict = judgeLine(window, params.degeneracy, track, middle.depth_m);
+}
+
 }  // namespace
 
 PluckerLine lineInWorld(const LineTrack& track) {
@@ -134,13 +167,12 @@ double lineError(const SlidingWindow& window, const LineTrack& track) {
   // a line along the motion may end in its own vanishing point, where noise decides what is in front
   const int least_in_front = track.group != 0 ? 1 : 2;
   for (const LineSighting& s : track.sightings) {
-    if (endsInCamera(window, track, s, ends) < least_in_front) return std::numeric_limits<double>::infinity();
-    const LineFactor factor(s.start, s.end, window.frame(s.frame).bodyMotion(), track.origin_w, 1);
-    const double* blocks[] = {window.frame(s.frame).pose.data(), window.extrinsics.data(), window.correction.data(),
-                              track.line.data()};
-    Eigen::Vector2d r;
-    factor.Evaluate(blocks, r.data(), nullptr);
-    sum += 0.5 * r.cwiseAbs().sum();
+    const CameraView view = viewOf(window, s.frame);
+    if (endsInCamera(window, view, track, s, ends) < least_in_front) return std::numeric_limits<double>::infinity();
+    LineLinearisation l;
+    LineFactor(s.start, s.end, FrameMotion{}, track.origin_w, 1)
+        .linearise(view, window.correction.data(), track.line.data(), false, l);
+    sum += 0.5 * l.residual.cwiseAbs().sum();
   }
   return track.sightings.empty() ? 0 : sum / static_cast<double>(track.sightings.size());
 }
@@ -151,12 +183,7 @@ void updateLineUncertainty(const SlidingWindow& window, const EstimatorParams& p
   if (track.verdict != LineVerdict::kNone &&
       static_cast<int>(track.sightings.size()) < params.landmarks.line_min_observations)
     return;
-  const NormalEquations4 normal = normalEquations(window, params.factors, track, track.line);
-  const SeenMiddle middle = middleOf(window, track);
-  const LineUncertainty uncertainty = uncertaintyOf(lineFromBlock(track.line.data()), normal.H, middle.along_m);
-  track.sigma_direction_rad = uncertainty.direction_rad;
-  track.sigma_distance_m = uncertainty.distance_m;
-  track.verdict = judgeLine(window, params.degeneracy, track, middle.depth_m);
+  judgeBy(LineResiduals(window, params.factors, track), window, params, track);
 }
 
 bool triangulateLine(const SlidingWindow& window, const EstimatorParams& params, LineTrack& track) {
@@ -170,17 +197,18 @@ bool triangulateLine(const SlidingWindow& window, const EstimatorParams& params,
     return false;
   }
   // A line that is far from being determined is not worth refining: its approximate sigmas show that already.
-  updateLineUncertainty(window, params, track);
+  const LineResiduals residuals(window, params.factors, track);
+  judgeBy(residuals, window, params, track);
   constexpr double kFarAbove = 3;  // times the limit: the approximation is wrong by less
   if (track.sigma_direction_rad > kFarAbove * params.degeneracy.max_sigma_direction_rad)
     return track.triangulated = true;
-  refine(window, params.factors, track);
+  refine(residuals, track);
   if (!(lineError(window, track) < params.landmarks.line_max_error_px)) {
     if (!track.degenerate()) track.verdict = LineVerdict::kNone;  // an outlier, unless it is degenerate
     return track.triangulated = track.degenerate() && params.degeneracy.lines == "use";
   }
   track.triangulated = true;
-  updateLineUncertainty(window, params, track);
+  judgeBy(residuals, window, params, track);
   return true;
 }
 
@@ -192,9 +220,10 @@ bool triangulateTied(const SlidingWindow& window, const EstimatorParams& params,
   constexpr double kMaxRelativeSigma = 0.05;
   const KnownDirection known{d_w, params.degeneracy.structural_sigma_rad};
   LineTrack tied = track;
-  refine(window, params.factors, tied, &known);
+  const LineResiduals residuals(window, params.factors, tied);
+  refine(residuals, tied, &known);
   if (!(lineError(window, tied) < params.landmarks.line_max_error_px)) return false;
-  const NormalEquations4 normal = normalEquations(window, params.factors, tied, tied.line, &known);
+  const NormalEquations4 normal = residuals.linearise(tied.line, known);
   const SeenMiddle middle = middleOf(window, tied);
   const LineUncertainty uncertainty = uncertaintyOf(lineFromBlock(tied.line.data()), normal.H, middle.along_m);
   if (uncertainty.distance_m > kMaxRelativeSigma * middle.depth_m) return false;

@@ -16,15 +16,17 @@ struct View {
   Eigen::Vector3d ray, baseline, seen;
 };
 
-std::vector<View> viewsOf(const SlidingWindow& window, const PointTrack& track) {
+std::vector<View> viewsOf(const CameraPoses& poses, const PointTrack& track) {
+  const CorrectionBlock& correction = poses.window().correction;
   std::vector<View> views;
+  views.reserve(track.sightings.size());
   const PointSighting& host = track.sightings.front();
-  const Pose T_w_ci = window.T_w_c(window.frame(host.frame));
-  const Eigen::Vector3d ray = host.observation.corrected(window.correction.data());
+  const Pose& T_w_ci = poses.T_w_c(host.frame);
+  const Eigen::Vector3d ray = host.observation.corrected(correction.data());
   for (std::size_t i = 1; i < track.sightings.size(); ++i) {
     const PointSighting& s = track.sightings[i];
-    const Pose T_cj_ci = window.T_w_c(window.frame(s.frame)).inverse() * T_w_ci;
-    views.push_back({T_cj_ci.q * ray, T_cj_ci.p, s.observation.corrected(window.correction.data())});
+    const Pose T_cj_ci = poses.T_c_w(s.frame) * T_w_ci;
+    views.push_back({T_cj_ci.q * ray, T_cj_ci.p, s.observation.corrected(correction.data())});
   }
   return views;
 }
@@ -65,10 +67,22 @@ Step evaluate(const Camera& camera, const std::vector<View>& views, double lambd
 
 }  // namespace
 
-bool triangulatePoint(const SlidingWindow& window, const LandmarkParams& params, double sigma_px, PointTrack& track) {
+CameraPoses::CameraPoses(const SlidingWindow& window) : window_(window) {
+  for (const WindowFrame& frame : window.frames) {
+    const Pose T_w_c = window.T_w_c(frame);
+    poses_.push_back({frame.id, T_w_c, T_w_c.inverse()});
+  }
+}
+
+const CameraPoses::Camera& CameraPoses::of(FrameId id) const {
+  return *std::find_if(poses_.begin(), poses_.end(), [id](const Camera& camera) { return camera.id == id; });
+}
+
+bool triangulatePoint(const CameraPoses& poses, const LandmarkParams& params, double sigma_px, PointTrack& track) {
+  const SlidingWindow& window = poses.window();
   track.triangulated = false;
   if (track.sightings.size() < 2) return false;
-  const std::vector<View> views = viewsOf(window, track);
+  const std::vector<View> views = viewsOf(poses, track);
   const double least = 1.0 / params.max_depth_m, most = 1.0 / params.min_depth_m;
   double lambda = std::clamp(linearInverseDepth(views), least, most);
   Step step = evaluate(window.camera(), views, lambda);
@@ -82,7 +96,7 @@ bool triangulatePoint(const SlidingWindow& window, const LandmarkParams& params,
       step.information > 0 ? sigma_px / focal / std::sqrt(step.information) : std::numeric_limits<double>::infinity();
   if (sigma > params.point_max_relative_sigma * lambda) return false;
   const PointSighting& first = track.sightings.front();
-  const Pose T_w_c = window.T_w_c(window.frame(first.frame));
+  const Pose& T_w_c = poses.T_w_c(first.frame);
   track.origin_w = T_w_c.p;
   track.point << T_w_c.q * first.observation.corrected(window.correction.data()), lambda;
   track.point.normalize();
@@ -92,16 +106,17 @@ bool triangulatePoint(const SlidingWindow& window, const LandmarkParams& params,
 }
 
 void triangulatePoints(SlidingWindow& window, const LandmarkParams& params, double sigma_px) {
+  const CameraPoses poses(window);
   for (auto& [id, track] : window.points)
     if (!track.triangulated && static_cast<int>(track.sightings.size()) >= params.point_min_observations)
-      triangulatePoint(window, params, sigma_px, track);
+      triangulatePoint(poses, params, sigma_px, track);
 }
 
-double reprojectionError(const SlidingWindow& window, const PointTrack& track) {
-  const Camera camera = window.correctedCamera();
+double reprojectionError(const CameraPoses& poses, const PointTrack& track) {
+  const Camera camera = poses.window().correctedCamera();
   double sum = 0;
   for (const PointSighting& s : track.sightings) {
-    const Pose T_w_c = window.T_w_c(window.frame(s.frame));
+    const Pose& T_w_c = poses.T_w_c(s.frame);
     const Eigen::Vector3d g =
         T_w_c.q.conjugate() * (track.point.head<3>() + track.point[3] * (track.origin_w - T_w_c.p));
     if (camera.depth(g, s.observation.ray) < 1e-6) return std::numeric_limits<double>::infinity();
@@ -110,13 +125,14 @@ double reprojectionError(const SlidingWindow& window, const PointTrack& track) {
   return track.sightings.empty() ? 0 : sum / static_cast<double>(track.sightings.size());
 }
 
-void updatePointUncertainty(const SlidingWindow& window, double sigma_px, PointTrack& track) {
+void updatePointUncertainty(const CameraPoses& poses, double sigma_px, PointTrack& track) {
+  const SlidingWindow& window = poses.window();
   if (track.sightings.size() < 2) return;
   const PointSighting& first = track.sightings.front();
-  const Pose T_c_w = window.T_w_c(window.frame(first.frame)).inverse();
-  const double depth = window.camera().depth(T_c_w * window.positionOf(track), first.observation.ray);
+  const double depth =
+      window.camera().depth(poses.T_c_w(first.frame) * window.positionOf(track), first.observation.ray);
   if (depth <= 0) return;
-  const Step step = evaluate(window.camera(), viewsOf(window, track), 1 / depth);
+  const Step step = evaluate(window.camera(), viewsOf(poses, track), 1 / depth);
   if (!step.in_front || step.information <= 0) return;
   track.sigma_inverse_depth =
       std::min(track.sigma_inverse_depth, sigma_px / window.camera().meanFocal() / std::sqrt(step.information));

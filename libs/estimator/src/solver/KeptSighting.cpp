@@ -35,13 +35,20 @@ double KeptSighting<Target>::linearise(const std::vector<CameraView>& views, con
   const Eigen::Matrix<double, N, Target::kRows> weighted = weight * J.transpose();
   const Eigen::Matrix<double, N, N> H = weighted.lazyProduct(J);
   const Eigen::Matrix<double, N, 1> b = J.transpose().lazyProduct(weight * l.residual);
-  const Eigen::Index from[] = {0, kCameraTangent, kTargetAt}, sizes[] = {kCameraTangent, kSightingCorrection, T},
-                     to[] = {layout.camera(camera), layout.correction(), layout.target(target)};
-  for (int i = 0; i < 3; ++i) {
-    eq.b.segment(to[i], sizes[i]) += b.segment(from[i], sizes[i]);
-    for (int j = 0; j <= i; ++j)
-      eq.H.block(to[i], to[j], sizes[i], sizes[j]) += H.block(from[i], from[j], sizes[i], sizes[j]);
-  }
+  const Eigen::Index view = layout.camera(camera), shared = layout.correction(), seen = layout.target(target);
+  eq.b.template segment<kCameraTangent>(view) += b.template head<kCameraTangent>();
+  eq.b.template segment<kSightingCorrection>(shared) += b.template segment<kSightingCorrection>(kCameraTangent);
+  eq.b.template segment<T>(seen) += b.template tail<T>();
+  eq.H.template block<kCameraTangent, kCameraTangent>(view, view) +=
+      H.template topLeftCorner<kCameraTangent, kCameraTangent>();
+  eq.H.template block<kSightingCorrection, kCameraTangent>(shared, view) +=
+      H.template block<kSightingCorrection, kCameraTangent>(kCameraTangent, 0);
+  eq.H.template block<kSightingCorrection, kSightingCorrection>(shared, shared) +=
+      H.template block<kSightingCorrection, kSightingCorrection>(kCameraTangent, kCameraTangent);
+  eq.H.template block<T, kCameraTangent>(seen, view) += H.template block<T, kCameraTangent>(kTargetAt, 0);
+  eq.H.template block<T, kSightingCorrection>(seen, shared) +=
+      H.template block<T, kSightingCorrection>(kTargetAt, kCameraTangent);
+  eq.H.template block<T, T>(seen, seen) += H.template bottomRightCorner<T, T>();
   return cost;
 }
 

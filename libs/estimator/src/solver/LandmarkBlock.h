@@ -22,6 +22,7 @@ struct LandmarkBlock {
     const ImageFactor<Target>* factor = nullptr;
     int camera = 0;
     ImageLinearisation<Target> linearised;
+    double weight = 1;  ///< by the loss
   };
 
   double* block = nullptr;
@@ -51,13 +52,15 @@ struct LandmarkBlock {
   double backSubstitute(const Eigen::VectorXd& camera_step, double damping);
 
  private:
+  using PlusJacobian = Eigen::Matrix<double, kSize, T, Eigen::RowMajor>;
+
   /// The cost of sightings whose squared residuals, robust, have this sum, and the weight that their track has.
   double trackCost(double squared, double& weight) const {
     return track_loss.cost(squared, Target::kRows * static_cast<int>(sightings.size()), T, weight);
   }
   void placeRows(const CameraLayout& layout);
   Eigen::Index correctionRow() const { return kCameraTangent * static_cast<Eigen::Index>(sightings.size()); }
-  void addSighting(std::size_t i, double track_weight, const RowMajorMatrix& plus, const CameraLayout& layout,
+  void addSighting(std::size_t i, double track_weight, const PlusJacobian& plus, const CameraLayout& layout,
                    CameraEquations& eq);
   double addTie(const CameraLayout& layout, CameraEquations& eq);
 };

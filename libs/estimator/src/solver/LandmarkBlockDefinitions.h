@@ -16,23 +16,26 @@ namespace landmark_block {
 constexpr double kNoInformation = 1e-8;  // eigenvalues below count as zero; residuals are in standard deviations
 constexpr double kLeastDamping = 1e-6;   // times the damping: the least that is added to a diagonal
 
+template <int Rows, int Columns>
+using ByRows = Eigen::Matrix<double, Rows, Columns, Eigen::RowMajor>;
+
 /// d residual / d tangent of the landmark; `plus`: the Jacobian of its manifold's Plus.
-template <class Target>
+template <class Target, class PlusJacobian>
 Eigen::Matrix<double, Target::kRows, Target::kTangent> tangentJacobian(const ImageLinearisation<Target>& l,
-                                                                       const RowMajorMatrix& plus) {
+                                                                       const PlusJacobian& plus) {
   if constexpr (Target::kColumns == Target::kTangent)
     return l.d_target;
   else
-    return l.d_target * plus.topLeftCorner<Target::kSize, Target::kTangent>();
+    return l.d_target * plus;
 }
 
 /// S with S S^T = H^-1; a pseudo-inverse where H has no information.
 template <int T>
 Eigen::Matrix<double, T, T> inverseRoot(Eigen::Matrix<double, T, T> H, double damping) {
-  if (damping > 0) {
-    for (int i = 0; i < T; ++i) H(i, i) += damping * std::max(H(i, i), kLeastDamping);
-    if (const auto root = inverseRootLlt<T>(H)) return *root;
-  }
+  for (int i = 0; i < T; ++i) H(i, i) += damping * std::max(H(i, i), kLeastDamping);
+  // the squared norm is the sum of 1 / eigenvalue: below the limit, no eigenvalue counts as zero
+  if (const auto root = inverseRootLlt<T>(H); root && (damping > 0 || root->squaredNorm() < 1 / kNoInformation))
+    return *root;
   const SymmetricEigen<T> eigen = symmetricEigen<T>(H);
   const auto root = eigen.values.unaryExpr([](double v) { return v > kNoInformation ? 1 / std::sqrt(v) : 0.0; });
   return eigen.vectors * root.asDiagonal();
@@ -61,7 +64,6 @@ double LandmarkBlock<Target>::cost(const std::vector<CameraView>& views, const d
 
 template <class Target>
 void LandmarkBlock<Target>::placeRows(const CameraLayout& layout) {
-  runs.clear();
   Eigen::Index rows = 0;
   const auto place = [&](Eigen::Index to, Eigen::Index size) {
     append({rows, to, size}, runs);
@@ -78,14 +80,14 @@ double LandmarkBlock<Target>::linearise(const std::vector<CameraView>& views, co
                                         const CameraLayout& layout, CameraEquations& eq) {
   H.setZero();
   b.setZero();
-  placeRows(layout);
+  if (runs.empty()) placeRows(layout);
   W.template middleRows<kSightingCorrection>(correctionRow()).setZero();
-  RowMajorMatrix plus(Target::kSize, T);
+  PlusJacobian plus;
   manifoldOf(kKindOf<Target>)->PlusJacobian(block, plus.data());
   double sum = 0, weight;
   for (Sighting& s : sightings) {
     s.factor->linearise(views[static_cast<std::size_t>(s.camera)], correction, block, true, s.linearised);
-    sum += robustCost(loss, s.linearised.residual.squaredNorm(), weight);
+    sum += robustCost(loss, s.linearised.residual.squaredNorm(), s.weight);
   }
   sum = trackCost(2 * sum, weight);
   for (std::size_t i = 0; i < sightings.size(); ++i) addSighting(i, weight, plus, layout, eq);
@@ -94,16 +96,15 @@ double LandmarkBlock<Target>::linearise(const std::vector<CameraView>& views, co
 }
 
 template <class Target>
-void LandmarkBlock<Target>::addSighting(std::size_t i, double track_weight, const RowMajorMatrix& plus,
+void LandmarkBlock<Target>::addSighting(std::size_t i, double track_weight, const PlusJacobian& plus,
                                         const CameraLayout& layout, CameraEquations& eq) {
   const Sighting& sighting = sightings[i];
   const ImageLinearisation<Target>& l = sighting.linearised;
-  double weight;
-  robustCost(loss, l.residual.squaredNorm(), weight);
-  const double root = std::sqrt(weight * track_weight);
-  const Eigen::Matrix<double, Target::kRows, T> J = root * landmark_block::tangentJacobian(l, plus);
-  const Eigen::Matrix<double, Target::kRows, kCameraTangent> Jc = root * l.d_camera;
-  const Eigen::Matrix<double, Target::kRows, kSightingCorrection> Ji = root * l.d_correction;
+  const double root = std::sqrt(sighting.weight * track_weight);
+  using landmark_block::ByRows;  // their transposed ones lie by columns, which makes products of them fast
+  const ByRows<Target::kRows, T> J = root * landmark_block::tangentJacobian(l, plus);
+  const ByRows<Target::kRows, kCameraTangent> Jc = root * l.d_camera;
+  const ByRows<Target::kRows, kSightingCorrection> Ji = root * l.d_correction;
   const Eigen::Matrix<double, Target::kRows, 1> r = root * l.residual;
   H.noalias() += J.transpose() * J;
   b.noalias() += J.transpose() * r;

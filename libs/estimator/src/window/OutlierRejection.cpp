@@ -10,9 +10,10 @@ namespace lintel {
 int rejectOutliers(SlidingWindow& window, const LandmarkParams& params) {
   int rejected = 0;
   const std::set<BlockKey> in_priors = pointsInPriors(window);  // lastingPoints() judges them
+  const CameraPoses poses(window);
   for (auto& [id, track] : window.points) {
     if (!track.triangulated || in_priors.count({BlockKey::kPoint, id}) > 0) continue;
-    if (reprojectionError(window, track) <= params.point_max_error_px) continue;
+    if (reprojectionError(poses, track) <= params.point_max_error_px) continue;
     // the newest sighting may be right: the track starts anew from there
     track.sightings.erase(track.sightings.begin(), track.sightings.end() - 1);
     track.former.clear();

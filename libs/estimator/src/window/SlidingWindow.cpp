@@ -73,11 +73,9 @@ void SlidingWindow::relinearise() {
   };
   for (auto& [id, track] : points) {
     std::for_each(track.sightings.begin(), track.sightings.end(), renewPoint);
-    std::for_each(track.former.begin(), track.former.end(), renewPoint);
   }
   for (auto& [id, track] : lines) {
     std::for_each(track.sightings.begin(), track.sightings.end(), renewLine);
-    std::for_each(track.former.begin(), track.former.end(), renewLine);
   }
 }
 

@@ -67,7 +67,7 @@ struct LineSighting {
 struct PointTrack {
   TrackId id = 0;
   std::vector<PointSighting> sightings;  ///< in window frames, in their order
-  std::vector<PointSighting> former;     ///< in keyframes that have left the window
+  std::vector<PointSighting> former;     ///< in keyframes that have left the window, as observed then
   PointBlock point = PointBlock::Zero();
   Eigen::Vector3d origin_w = Eigen::Vector3d::Zero();
   double sigma_inverse_depth = 0;  ///< along the ray of the first sighting [1/m]; the best so far
@@ -158,7 +158,8 @@ class SlidingWindow {
   /// Appends a frame and its tracks.
   void addFrame(WindowFrame frame, const FrameTracks& tracks);
 
-  /// Linearises the observations about the present correction, when it has left what they are linear within.
+  /// Linearises the observations about the present correction, when it has left what they are linear within; not those
+  /// in frames that have left.
   void relinearise();
 
   /// The correction about which the observations are linear.

@@ -50,7 +50,16 @@ Eigen::Vector3d velocityOf(const double* motion);
 ImuBias biasOf(const double* motion);
 
 /// The calibrated camera with a correction block added.
-Camera correctedCamera(Camera camera, const double* correction);
+inline Camera correctedCamera(const Camera& calibrated, const double* correction) {
+  Camera camera = calibrated;
+  camera.fx += correction[0];
+  camera.fy += correction[1];
+  camera.cx += correction[2];
+  camera.cy += correction[3];
+  camera.lens[0] += correction[4];
+  camera.lens[1] += correction[5];
+  return camera;
+}
 
 /// Maps a right perturbation to quaternion coefficients: dq (x y z w) = rotationPlus(q) * dtheta.
 Eigen::Matrix<double, 4, 3> rotationPlus(const Eigen::Quaterniond& q);

@@ -81,9 +81,10 @@ struct Camera {
 
   Eigen::Vector2d distort(const Eigen::Vector2d& normalised) const;
 
-  /// Inverse of distort by Newton iterations to 1e-12; diverging inputs (far outside the image) return the last
-  /// iterate.
-  Eigen::Vector2d undistort(const Eigen::Vector2d& distorted) const;
+  /// Inverse of distort by Newton iterations to 1e-12, from a place near it; diverging inputs (far outside the image)
+  /// return the last iterate.
+  Eigen::Vector2d undistort(const Eigen::Vector2d& distorted, const Eigen::Vector2d& near) const;
+  Eigen::Vector2d undistort(const Eigen::Vector2d& distorted) const { return undistort(distorted, distorted); }
 
   /// d distort / d normalised.
   Eigen::Matrix2d distortJacobian(const Eigen::Vector2d& normalised) const;
@@ -93,6 +94,7 @@ struct Camera {
 
   /// Distorted pixels to (x/z, y/z), and back.
   Eigen::Vector2d normalise(const Eigen::Vector2d& px) const;
+  Eigen::Vector2d normalise(const Eigen::Vector2d& px, const Eigen::Vector2d& near) const;  ///< from a place near it
   Eigen::Vector2d toPixel(const Eigen::Vector2d& normalised) const;
 };
 
