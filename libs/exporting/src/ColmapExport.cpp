@@ -98,8 +98,11 @@ ColmapCamera colmapCamera(const Camera& c) {
     parameters.insert(parameters.end(), c.lens.begin(), c.lens.begin() + static_cast<std::ptrdiff_t>(coefficients));
     return parameters;
   };
+  if (c.model == LensModel::kRadialTangential && c.lens == decltype(c.lens){}) return {1, "PINHOLE", with(0)};
   if (c.model == LensModel::kEquidistant) return {5, "OPENCV_FISHEYE", with(4)};
-  if (c.wide()) throw std::runtime_error(std::string("COLMAP has no lens model ") + lensName(c.model).name);
+  if (c.wide())
+    throw std::runtime_error(std::string("COLMAP has no lens model ") + lensName(c.model).name +
+                             ": undistorted (lintel-map --undistorted) it is a pinhole camera");
   if (c.model == LensModel::kRational || c.lens[4] != 0) return {6, "FULL_OPENCV", with(8)};
   return {4, "OPENCV", with(4)};
 }

@@ -26,7 +26,8 @@ void writePng(const GrayImage& image, const std::string& path) {
 }  // namespace
 
 std::size_t writeColmapImages(const LineMap& map, const std::string& folder,
-                              const std::function<std::optional<Frame>()>& next) {
+                              const std::function<std::optional<Frame>()>& next,
+                              const std::function<GrayImage(const GrayImage&)>& prepare) {
   std::error_code ignored;
   std::filesystem::create_directories(folder, ignored);
   if (!std::filesystem::is_directory(folder)) throw ExportError(folder + ": cannot be made: choose another name");
@@ -37,7 +38,8 @@ std::size_t writeColmapImages(const LineMap& map, const std::string& folder,
     const std::optional<Frame> frame = next();
     if (!frame) break;
     if (wanted.count(frame->t_ns) == 0) continue;
-    writePng(*frame->image, (std::filesystem::path(folder) / colmapName(frame->t_ns)).string());
+    const std::string path = (std::filesystem::path(folder) / colmapName(frame->t_ns)).string();
+    writePng(prepare ? prepare(*frame->image) : *frame->image, path);
     ++written;
   }
   return written;

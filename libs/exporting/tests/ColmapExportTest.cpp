@@ -54,7 +54,7 @@ TEST_F(ColmapExport, TextIsAsComputedByHand) {
     const std::string text = content(in("model.colmaptxt/" + name));
     return text.substr(text.find('\n') + 1);
   };
-  EXPECT_EQ(body("cameras.txt"), "1 OPENCV 200 100 100 100 100 50 0 0 0 0\n");
+  EXPECT_EQ(body("cameras.txt"), "1 PINHOLE 200 100 100 100 100 50\n");
   EXPECT_EQ(body("points3D.txt"), "5 4 0 0 128 128 128 1 1 0 2 0\n");
   // q_c_w: turns x to z, y to -x, z to -y; the second camera's centre is at y = -1, which is x = 1 in the camera
   EXPECT_EQ(body("images.txt"),
@@ -67,10 +67,10 @@ TEST_F(ColmapExport, BinaryHoldsTheSame) {
               points = content(in("model.colmap/points3D.bin"));
   EXPECT_EQ(take<std::uint64_t>(cameras), 1U);
   EXPECT_EQ(take<std::uint32_t>(cameras), 1U);
-  EXPECT_EQ(take<std::int32_t>(cameras), 4);  // OPENCV
+  EXPECT_EQ(take<std::int32_t>(cameras), 1);  // PINHOLE
   EXPECT_EQ(take<std::uint64_t>(cameras), 200U);
   EXPECT_EQ(take<std::uint64_t>(cameras), 100U);
-  for (const double value : {100., 100., 100., 50., 0., 0., 0., 0.}) EXPECT_EQ(take<double>(cameras), value);
+  for (const double value : {100., 100., 100., 50.}) EXPECT_EQ(take<double>(cameras), value);
   EXPECT_EQ(cameras, "");
 
   EXPECT_EQ(take<std::uint64_t>(images), 2U);
@@ -111,6 +111,8 @@ TEST_F(ColmapExport, LensesHaveTheirModels) {
   };
   EXPECT_EQ(camera(LensModel::kEquidistant, {0.5, 0.25, 0.125, 0.0625}),
             "1 OPENCV_FISHEYE 200 100 100 100 100 50 0.5 0.25 0.125 0.0625\n");
+  EXPECT_EQ(camera(LensModel::kRadialTangential, {0.5, 0.25, 0.125, 0.0625}),
+            "1 OPENCV 200 100 100 100 100 50 0.5 0.25 0.125 0.0625\n");
   EXPECT_EQ(camera(LensModel::kRational, {0.5, 0.25, 0.125, 0.0625, 1, 2, 3, 4}),
             "1 FULL_OPENCV 200 100 100 100 100 50 0.5 0.25 0.125 0.0625 1 2 3 4\n");
   EXPECT_EQ(camera(LensModel::kRadialTangential, {0.5, 0.25, 0.125, 0.0625, 2}),

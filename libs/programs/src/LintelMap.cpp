@@ -18,6 +18,7 @@
 #include "StopSignals.h"
 #include "lintel/exporting/ColmapImages.h"
 #include "lintel/exporting/MapExport.h"
+#include "lintel/exporting/Undistortion.h"
 #include "lintel/mapping/MapFile.h"
 #include "lintel/sensing/Recording.h"
 
@@ -63,13 +64,13 @@ class LintelMap {
       throw UsageError("--images DIR and --recording INPUT belong together; give both");
     checkOutputs();
     const ExportParams params = exportParams();
-    const LineMap map = readMap(input_);
+    const LineMap read = readMap(input_), map = undistorted_ ? undistorted(read) : read;
     const StopSignals stop;
     for (const std::string& output : outputs_) {
       checkNotStopped(stop, output);
       report(exportMap(map, output, params));
     }
-    if (!images_of_.empty()) writeImages(map, stop);
+    if (!images_of_.empty()) writeImages(read, stop);
     return 0;
   }
 
@@ -87,6 +88,8 @@ class LintelMap {
            "  lintel-map map.lintel -o map.png --colour height       a picture: above, first camera, side\n"
            "  lintel-map map.lintel -o map.csv --min-observations 5  a table of the well-seen lines\n"
            "  lintel-map map.lintel -o map.colmap --images images --recording flight.bag   for COLMAP\n"
+           "  lintel-map map.lintel -o map.colmap --images images --recording flight.bag --undistorted   for "
+           "splatting\n"
            "  lintel-map map.lintel -o map.obj --layers lines,trajectory --radius 0.01\n"
            "lintel-map densify MAP.lintel INPUT -o FILE.lintel searches the images for more lines: see lintel-map "
            "densify --help\n"
@@ -131,6 +134,8 @@ class LintelMap {
     line_.option("--images", images_, "Write the images of the keyframes to this folder, under COLMAP's names")
         .type("DIR");
     line_.option("--recording", images_of_, "With --images: the recording of the map").type("INPUT");
+    line_.flag("--undistorted", undistorted_,
+               "As a pinhole camera without distortion would have seen it: camera, observations, images");
     addRecordingOptions(line_, recording_params_);
     line_.flag("-w,--overwrite", overwrite_, "Replace files that exist already");
     line_.flag("-q,--quiet", quiet_, "Print nothing");
@@ -149,7 +154,9 @@ class LintelMap {
       if (!step) return std::nullopt;
       return step->frame;
     };
-    const std::size_t written = writeColmapImages(map, images_, next);
+    std::function<GrayImage(const GrayImage&)> prepare;
+    if (undistorted_) prepare = ImageUndistorter(map.rig.camera, pinholeOf(map.rig.camera));
+    const std::size_t written = writeColmapImages(map, images_, next, prepare);
     if (written < map.keyframes.size())
       throw std::runtime_error(images_of_ + ": has images of " + std::to_string(written) + " of " +
                                std::to_string(map.keyframes.size()) + " keyframes: give the recording of this map");
@@ -191,7 +198,7 @@ class LintelMap {
   std::string input_, images_, images_of_, style_, colour_ = "kind";
   std::vector<std::string> outputs_, layers_;
   ExportParams params_;
-  bool overwrite_ = false, quiet_ = false;
+  bool overwrite_ = false, quiet_ = false, undistorted_ = false;
 };
 
 }  // namespace
