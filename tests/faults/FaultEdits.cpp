@@ -11,6 +11,7 @@
 #include <sstream>
 #include <stdexcept>
 
+#include "MapChecksums.h"
 #include "TinyEuroc.h"
 
 namespace lintel::test {
@@ -198,6 +199,7 @@ using Change = std::function<std::string(const std::string& text, const Words& w
 /// Verbs that make other bytes of a file's bytes.
 const std::map<std::string, Change>& changes() {
   static const std::map<std::string, Change> kChanges{
+      {"checksums", [](const std::string& t, const Words&) { return withRightChecksums(t); }},
       {"empty", [](const std::string&, const Words&) { return ""; }},
       {"write", [](const std::string&, const Words& w) { return w.at(2); }},
       {"cut", [](const std::string& t, const Words& w) { return t.substr(0, placeIn(t.size(), w.at(2))); }},

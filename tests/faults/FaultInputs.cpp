@@ -9,7 +9,9 @@
 #include "ProgramMain.h"
 #include "TinyEuroc.h"
 #include "lintel/bench/BenchSuite.h"
+#include "lintel/evaluation/Consistency.h"
 #include "lintel/evaluation/TrajectoryFile.h"
+#include "lintel/inertial/Preintegration.h"
 #include "lintel/mapping/MapFile.h"
 #include "lintel/pipeline/Configuration.h"
 #include "lintel/sensing/Calibration.h"
@@ -59,6 +61,52 @@ std::string garbageIn(const std::vector<FrameWithImu>& steps) {
   return "";
 }
 
+/// The first poses of trajectory.tum.
+StampedPoses fivePoses() {
+  StampedPoses poses;
+  for (std::int64_t i = 0; i < 5; ++i) poses.emplace_back(i * 1000000000 + 500000000, Pose{});
+  return poses;
+}
+
+std::string covariancesOfFivePoses() {
+  std::string text = "# timestamp and the upper triangle\n";
+  for (int i = 0; i < 5; ++i) {
+    text += std::to_string(i) + ".500000000";
+    for (int r = 0; r < 6; ++r)
+      for (int c = r; c < 6; ++c) text += r == c ? ",1.5e-4" : ",-2e-6";
+    text += "\n";
+  }
+  return text;
+}
+
+/// A map with all sections.
+LineMap wholeMap() {
+  LineMap map;
+  map.rig.camera = {752, 480, 458, 457, 367, 248, -0.28, 0.07, 2e-4, 2e-5};
+  map.rig.camera.model = LensModel::kDoubleSphere;
+  map.configuration = "a: 1\n", map.source = "monday";
+  map.keyframes.resize(4);
+  for (std::uint64_t i = 0; i < map.keyframes.size(); ++i)
+    map.keyframes[i].id = 3 * i, map.keyframes[i].t_ns = static_cast<std::int64_t>(1000 + i);
+  auto imu = std::make_shared<Preintegration>(ImuBias{}, ImuNoise{1e-3, 1e-4, 1e-5, 1e-6});
+  imu->append({{5, {0, 0, 1}, {0, 0, 9.8}}, {1000005, {0, 1, 0}, {0, 0, 9.8}, true}});
+  map.keyframes[1].imu = imu, map.keyframes[1].at_rest = true;
+  map.points.push_back({4, {1, 2, 3}, 0.5, 1000, 1001, {{0, {10, 20}}, {3, {11, 20}}}});
+  for (std::uint64_t i = 0; i < 3; ++i)
+    map.lines.push_back({7 + i, {{1, 2, 3}, {4, 5, 6}}, 0.01, 0.02, 1000, 1001, i == 0, i == 1, false, int(i) - 1, {}});
+  map.lines[0].observations = {{0, {1, 2}, {3, 4}}, {3, {5, 6}, {7, 8}}};
+  map.lines[1].covariance.setConstant(0.25F);
+  map.groups = {{"vertical", {0, 0, 1}, 0.01}, {"horizontal 1", {1, 0, 0}, 0.02}};
+  map.camera_errors.assign(map.keyframes.size(), CameraErrors::Constant(0.25F));
+  map.corners = {{{1, 2, 3}, 0.01, {7, 8}}};
+  map.planes = {{"floor", {0, 0, 1}, -0.5, 0.003, {8, 9}, {4}}};
+  for (int i = 0; i < 4; ++i) map.trajectory.emplace_back(1000 + i, Pose{});
+  map.time_offset_s = -0.0031, map.recordings = {"monday", "tuesday"};
+  map.pieces = {{0, 1000, 1001, 0, 0, 0}, {6, 1002, 1003, 2, 0, 1}};
+  map.views.push_back({1, {1002, {{{1.5F, 2.25F}, 4, 0, {1, 2, 3, 4}}}}});
+  return map;
+}
+
 void readFile(const fs::path& work, const std::string& form) {
   const std::string path = (work / form).string();
   Configuration configuration;
@@ -68,8 +116,9 @@ void readFile(const fs::path& work, const std::string& form) {
     if (calibration.cameras.empty()) throw RecordingError(path + ": holds no camera");
     for (const CameraCalibration& camera : calibration.cameras) camera.make();
   }
-  if (form == "map.lintel") readMap(path);
+  if (fs::path(form).extension() == ".lintel") readMap(path);
   if (form == "trajectory.tum") readTrajectory(path);
+  if (form == "trajectory_covariance.csv") readCovariances(path, fivePoses());
   if (form == "suite.yaml") readSuite(path, work.string());
 }
 
@@ -106,8 +155,13 @@ void FaultInputs::makeOtherFiles() const {
   map.points.resize(3);
   map.lines.resize(2);
   map.keyframes.resize(2);
-  for (std::size_t i = 0; i < map.keyframes.size(); ++i) map.keyframes[i].t_ns = static_cast<std::int64_t>(1 + i);
+  for (std::uint64_t i = 0; i < map.points.size(); ++i) map.points[i].id = i;
+  for (std::uint64_t i = 0; i < map.lines.size(); ++i) map.lines[i].id = i;
+  for (std::uint64_t i = 0; i < map.keyframes.size(); ++i)
+    map.keyframes[i].id = i, map.keyframes[i].t_ns = static_cast<std::int64_t>(1 + i);
   writeMap(map, (whole / "map.lintel").string());
+  writeMap(wholeMap(), (whole / "whole_map.lintel").string());
+  writeText((whole / "trajectory_covariance.csv").string(), covariancesOfFivePoses());
   std::string trajectory = "# t x y z qx qy qz qw\n";
   for (int i = 0; i < 20; ++i) trajectory += std::to_string(i) + ".5 1 2 " + std::to_string(i) + " 0 0 0 1\n";
   writeText((whole / "trajectory.tum").string(), trajectory);

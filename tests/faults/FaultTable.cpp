@@ -30,6 +30,8 @@ std::string formName(const std::string& form) {
   if (extension == ".bag" || extension == ".db3" || extension == ".mcap") return "bag";
   if (extension == ".rawlog") return "rawlog";
   if (form == "kalibr.yaml" || form == "vins.yaml") return "calibration";
+  if (extension == ".lintel") return "map";
+  if (extension == ".csv") return "covariances";
   return form.substr(0, form.find('.'));
 }
 

@@ -5,8 +5,10 @@
 
 #include "GrayPng.h"
 #include "ImageFile.h"
+#include "MapChecksums.h"
 #include "TinyEuroc.h"
 #include "lintel/bench/BenchSuite.h"
+#include "lintel/evaluation/Consistency.h"
 #include "lintel/evaluation/TrajectoryFile.h"
 #include "lintel/mapping/MapFile.h"
 #include "lintel/pipeline/Configuration.h"
@@ -66,6 +68,15 @@ void calibration(const std::string& bytes) {
   for (const CameraCalibration& camera : calibration.cameras) camera.make();
 }
 
+/// Of the five poses that the seed has.
+void covariance(const std::string& bytes) {
+  StampedPoses poses;
+  for (std::int64_t i = 0; i < 5; ++i) poses.emplace_back(i * 1000000000 + 500000000, Pose{});
+  poses[1].second.q = Eigen::Quaterniond(0.5, 0.5, 0.5, 0.5);
+  const auto covariances = readCovariances(fileWith("covariance.csv", bytes), poses);
+  evaluateConsistency(poses, covariances, poses);
+}
+
 void png(const std::string& bytes) {
   const std::vector<std::uint8_t> file(bytes.begin(), bytes.end());
   decodeGrayPng(file);
@@ -88,7 +99,9 @@ const std::vector<Parser>& parsers() {
          readConfiguration(fileWith("configuration.yaml", b), configuration);
        }},
       {"trajectory", "trajectory.tum", [](const std::string& b) { readTrajectory(fileWith("trajectory.tum", b)); }},
+      {"covariance", "trajectory_covariance.csv", covariance},
       {"map", "map.lintel", [](const std::string& b) { mapFromBytes(b, "map"); }},
+      {"map_sections", "whole_map.lintel", [](const std::string& b) { mapFromBytes(withRightChecksums(b), "map"); }},
       {"suite", "suite.yaml",
        [](const std::string& b) { readSuite(fileWith("suite.yaml", b), workFolder().path().string()); }},
       {"rawlog", "plain.rawlog", [](const std::string& b) { readThrough(fileWith("fuzzed.rawlog", b), false); }},

@@ -3,6 +3,7 @@
 
 #include <Eigen/Cholesky>
 #include <boost/math/distributions/chi_squared.hpp>
+#include <cmath>
 
 #include "lintel/core/TextRows.h"
 #include "lintel/geometry/Rotation.h"
@@ -10,6 +11,18 @@
 namespace lintel {
 
 namespace {
+
+/// Symmetric, and no correlation above 1 but for rounded numbers.
+bool isPossible(const PoseCovariance& covariance) {
+  constexpr double kRounding = 1e-3;
+  for (int i = 0; i < 6; ++i)
+    for (int j = 0; j < i; ++j) {
+      const double most = std::sqrt(covariance(i, i)) * std::sqrt(covariance(j, j));
+      if (!(std::abs(covariance(i, j)) <= (1 + kRounding) * most)) return false;
+      if (!(std::abs(covariance(i, j) - covariance(j, i)) <= kRounding * most)) return false;
+    }
+  return true;
+}
 
 PoseCovariance covarianceOf(const TextRows& rows) {
   const std::size_t columns = rows.fields().size();
@@ -23,6 +36,7 @@ PoseCovariance covarianceOf(const TextRows& rows) {
       if (columns == 22) covariance(j, i) = value;
     }
   if (covariance.diagonal().minCoeff() < 0) rows.fail("a variance is negative");
+  if (!isPossible(covariance)) rows.fail("is no covariance: larger beside the diagonal than the variances allow");
   return covariance;
 }
 

@@ -121,6 +121,11 @@ TEST(Consistency, CovariancesOfAnotherTrajectoryAreRefused) {
   fails(row + "\n", {{1'000'000'000, Pose()}}, "c.csv:1: is not the time of pose 1");
   fails(row + "\n", {{1'500'000'000, Pose()}, {2'000'000'000, Pose()}}, "ends after 1 of 2 poses");
   fails("1.5,2,3\n", {{1'500'000'000, Pose()}}, "21 or 36 numbers");
+  std::string strong = row, lopsided = "1.500000000";
+  strong.replace(strong.find(",1,1") + 2, 2, ",2");
+  fails(strong + "\n", {{1'500'000'000, Pose()}}, "is no covariance");
+  for (int i = 0; i < 36; ++i) lopsided += i % 7 == 0 ? ",1" : i == 1 ? ",0.5" : ",0";
+  fails(lopsided + "\n", {{1'500'000'000, Pose()}}, "is no covariance");
 }
 
 }  // namespace

@@ -10,6 +10,7 @@
 #include <set>
 #include <sstream>
 
+#include "MapChecks.h"
 #include "MapSections.h"
 #include "lintel/core/AtomicFile.h"
 
@@ -57,12 +58,13 @@ class MapFileReader {
     for (;;) {
       const auto [name, payload] = readSection();
       if (name == kEnd) break;
-      if (!seen.insert(name).second) fail("has the section " + name + " twice");
+      if (!seen.insert(name).second) fail("has a section twice");
       for (const MapSection& section : kMapSections) {
         if (section.name == name) decode(section, payload, map);
       }
     }
     if (left_ != 0) fail("has bytes after its end");
+    if (const std::string wrong = whatIsWrong(map); !wrong.empty()) fail(wrong);
     return map;
   }
 

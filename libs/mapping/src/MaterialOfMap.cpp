@@ -43,7 +43,7 @@ MapMaterial materialOf(const MapParams& params, const LineMap& map) {
     record.estimate.direction_w = line.segment_w.direction();
     for (const MapLineObservation& seen : line.observations)
       record.views.push_back({seen.keyframe_id, line.id, seen.start_px, seen.end_px, kViewSigma_px, true});
-    if (line.constrained && line.group >= 0) {
+    if (line.constrained && line.group >= 0 && static_cast<std::size_t>(line.group) < map.groups.size()) {
       const MapGroup& group = map.groups[static_cast<std::size_t>(line.group)];
       record.tie = LineTie{group.direction_w, std::max(group.spread_rad, line.sigma_direction_rad), {}};
     }

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Sections of the map file that only merging reads: pieces, the IMU between keyframes, what places look like.
+#include "MapChecks.h"
 #include "MapSections.h"
 #include "lintel/inertial/Preintegration.h"
 
@@ -28,6 +29,7 @@ std::shared_ptr<const Preintegration> decodeImu(ByteReader& in) {
   noise.gyro_noise = in.f64(), noise.gyro_walk = in.f64(), noise.accel_noise = in.f64(), noise.accel_walk = in.f64();
   ImuBatch samples(in.count(kSampleSize));
   for (ImuSample& s : samples) s.t_ns = in.i64(), s.gyro = in.vec3(), s.accel = in.vec3(), s.bridged = in.u8() != 0;
+  if (const std::string wrong = wrongSamples(samples); !wrong.empty()) throw ByteReaderError(wrong);
   auto imu = std::make_shared<Preintegration>(bias, noise);
   imu->append(samples);
   return imu;

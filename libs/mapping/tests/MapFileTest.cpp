@@ -8,6 +8,7 @@
 #include <cmath>
 #include <cstring>
 #include <fstream>
+#include <functional>
 #include <limits>
 #include <random>
 
@@ -48,13 +49,13 @@ LineMap sampleMap() {
     for (std::uint64_t k = 0; k < i % 4; ++k) map.points.back().observations.push_back({k, vec2()});
   }
   for (std::uint64_t i = 0; i < 20; ++i) {
-    MapLine line{i + 100, {vec(), vec()}, 0.01, 0.02, 5, 6, i % 2 == 0, i % 3 == 0, i == 7, int(i % 4) - 1, {}};
+    MapLine line{i + 100, {vec(), vec()}, 0.01, 0.02, 5, 6, i % 2 == 0, i % 3 == 0, i == 7, int(i % 3) - 1, {}};
     for (std::uint64_t k = 0; k < i % 5; ++k) line.observations.push_back({k, vec2(), vec2()});
     map.lines.push_back(line);
   }
   map.lines[3].segment_w.start = {std::nan(""), -0.0, std::numeric_limits<double>::infinity()};
   map.lines[4].segment_w.start = {std::numeric_limits<double>::denorm_min(), 1e308, 0.1};
-  map.lines[4].id = ~std::uint64_t{0};
+  map.lines[19].id = ~std::uint64_t{0};
   map.groups = {{"vertical", {0, 0, 1}, 0.01}, {"", vec(), -1}};
   for (int c = 0; c < 4; ++c)
     for (int r = 0; r < 4; ++r) map.lines[5].covariance(r, c) = 0.1f * static_cast<float>(r + c);
@@ -110,13 +111,14 @@ TEST_F(MapFile, EveryValueReturnsToTheBit) {
   EXPECT_EQ(back.points[3].sigma_distance_m, map.points[3].sigma_distance_m);
   EXPECT_EQ(std::memcmp(&back.lines[3].segment_w, &map.lines[3].segment_w, sizeof(Segment3)), 0);
   EXPECT_EQ(std::memcmp(&back.lines[4].segment_w, &map.lines[4].segment_w, sizeof(Segment3)), 0);
-  EXPECT_EQ(back.lines[4].id, ~std::uint64_t{0});
+  EXPECT_EQ(back.lines[19].id, ~std::uint64_t{0});
   EXPECT_EQ(back.lines[9].observations[3].end_px, map.lines[9].observations[3].end_px);
   EXPECT_EQ(back.lines[9].constrained, true);
   EXPECT_EQ(back.lines[9].degenerate, false);
   EXPECT_EQ(back.lines[9].mapped, false);
   EXPECT_EQ(back.lines[7].mapped, true);
-  EXPECT_EQ(back.lines[8].group, -1);
+  EXPECT_EQ(back.lines[8].group, 1);
+  EXPECT_EQ(back.lines[9].group, -1);
   EXPECT_EQ(back.lines[8].last_t_ns, 6);
   EXPECT_EQ(back.trajectory[29].first, 1403636579763555584 + 29);
   ASSERT_EQ(back.groups.size(), 2u);
@@ -226,6 +228,45 @@ TEST_F(MapFile, MutationsWithRightChecksumsNeverCrash) {
     }
   }
   EXPECT_GT(refused, 150);
+}
+
+TEST_F(MapFile, WholeSectionsThatSayWhatCannotBeAreRefused) {
+  const std::vector<std::pair<const char*, std::function<void(LineMap&)>>> cases{
+      {"records that are out of order", [](LineMap& m) { m.keyframes[2].id = m.keyframes[1].id; }},
+      {"records that are out of order", [](LineMap& m) { std::swap(m.points[2], m.points[3]); }},
+      {"records that are out of order", [](LineMap& m) { m.lines[3].id = 0; }},
+      {"a keyframe of the number 18446744073709551615", [](LineMap& m) { m.keyframes.back().id = ~std::uint64_t{0}; }},
+      {"a line in a group that does not exist", [](LineMap& m) { m.lines[3].group = 2; }},
+      {"a line in a group that does not exist", [](LineMap& m) { m.lines[3].group = -2; }},
+      {"a camera that there is not", [](LineMap& m) { m.rig.camera.width = -1; }},
+      {"a camera that there is not", [](LineMap& m) { m.rig.camera.fx = std::nan(""); }},
+      {"clocks that are an hour apart", [](LineMap& m) { m.time_offset_s = 1e300; }},
+      {"times that no clock shows", [](LineMap& m) { m.keyframes[0].t_ns = INT64_MIN; }},
+      {"times that no clock shows", [](LineMap& m) { m.trajectory[0].first = INT64_MAX; }},
+      {"times that no clock shows", [](LineMap& m) { m.lines[0].last_t_ns = INT64_MAX; }},
+      {"times that no clock shows", [](LineMap& m) { m.views[0].looks.t_ns = INT64_MIN; }},
+      {"a piece in the frame of a later one", [](LineMap& m) { m.pieces[0].world = 1; }},
+      {"a piece of a recording that it does not name", [](LineMap& m) { m.pieces[1].recording = 2; }},
+      {"a piece of a recording that it does not name", [](LineMap& m) { m.pieces[1].recording = -1; }},
+      {"a piece that ends before it begins", [](LineMap& m) { m.pieces[0].last_ns = 4; }},
+      {"pieces out of order", [](LineMap& m) { m.pieces[1].first_keyframe = 0; }},
+      {"a piece beyond its trajectory", [](LineMap& m) { m.pieces[1].first_pose = 31; }},
+      {"an hour of IMU from one keyframe to the next", [](LineMap& m) {
+         auto imu = std::make_shared<Preintegration>(ImuBias{}, ImuNoise{});
+         imu->append({{5, {}, {}}, {4'000'000'000'000, {}, {}}});
+         m.keyframes[1].imu = imu;
+       }}};
+  for (const auto& [what, change] : cases) {
+    LineMap map = sampleMap();
+    change(map);
+    writeMap(map, path_);
+    try {
+      readMap(path_);
+      ADD_FAILURE() << "read: " << what;
+    } catch (const MapFileError& error) {
+      EXPECT_NE(std::string(error.what()).find(what), std::string::npos) << error.what();
+    }
+  }
 }
 
 TEST_F(MapFile, AbsurdCountsAreRefusedBeforeAnythingIsReserved) {

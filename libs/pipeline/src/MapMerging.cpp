@@ -7,6 +7,7 @@
 #include <unordered_map>
 
 #include "LoopStage.h"
+#include "MapDamage.h"
 #include "MapTimes.h"
 #include "lintel/core/Quantiles.h"
 #include "lintel/geometry/Rotation.h"
@@ -41,6 +42,9 @@ std::string objection(const LineMap& first, const LineMap& second) {
     if (map->views.empty() || map->pieces.empty())
       return std::string("the ") + (map == &first ? "first" : "second") +
              " one keeps no views of its places: make it again, with loops.enabled and loops.keep_interval_s above 0";
+  for (const LineMap* map : {&first, &second})
+    if (isDamaged(*map))
+      return std::string("the ") + (map == &first ? "first" : "second") + " one holds numbers that no flight has";
   if (isTheSame(first, second)) return "both are the map of one run";
   if (!ofOneCamera(first.rig, second.rig)) return "they were made with different cameras or calibrations";
   return {};

@@ -12,9 +12,14 @@ namespace {
 
 constexpr std::int64_t kBetween_ns = 100'000'000'000;
 
+/// The sum, whatever a damaged map says of a landmark's times.
+std::int64_t moved(std::int64_t t_ns, std::int64_t by_ns) {
+  return static_cast<std::int64_t>(static_cast<std::uint64_t>(t_ns) + static_cast<std::uint64_t>(by_ns));
+}
+
 std::shared_ptr<const Preintegration> moved(const Preintegration& imu, std::int64_t by_ns) {
   ImuBatch samples = imu.samples();
-  for (ImuSample& sample : samples) sample.t_ns += by_ns;
+  for (ImuSample& sample : samples) sample.t_ns = moved(sample.t_ns, by_ns);
   auto result = std::make_shared<Preintegration>(imu.bias(), imu.noise());
   result->append(samples);
   return result;
@@ -48,8 +53,8 @@ void moveTimes(const std::vector<std::int64_t>& by_ns, LineMap& map) {
   }
   const auto moveSeen = [&](auto& landmark) {
     if (landmark.observations.empty()) return;
-    landmark.first_t_ns += ofKeyframe(landmark.observations.front().keyframe_id);
-    landmark.last_t_ns += ofKeyframe(landmark.observations.back().keyframe_id);
+    landmark.first_t_ns = moved(landmark.first_t_ns, ofKeyframe(landmark.observations.front().keyframe_id));
+    landmark.last_t_ns = moved(landmark.last_t_ns, ofKeyframe(landmark.observations.back().keyframe_id));
   };
   for (MapPoint& point : map.points) moveSeen(point);
   for (MapLine& line : map.lines) moveSeen(line);

@@ -4,6 +4,8 @@
 
 #include <gmock/gmock.h>
 
+#include <functional>
+
 #include "MapTimes.h"
 #include "lintel/inertial/Preintegration.h"
 
@@ -25,7 +27,7 @@ LineMap smallMap(std::int64_t from_ns, const std::string& source) {
     keyframe.t_ns = from_ns + static_cast<std::int64_t>(id) * kSecond;
     if (id > 0) {
       auto imu = std::make_shared<Preintegration>(ImuBias{}, ImuNoise{});
-      imu->append({{keyframe.t_ns - kSecond, {}, {0, 0, 9.81}}, {keyframe.t_ns, {}, {0, 0, 9.81}}});
+      imu->append({{keyframe.t_ns - kSecond, {0, 0, 0}, {0, 0, 9.81}}, {keyframe.t_ns, {0, 0, 0}, {0, 0, 9.81}}});
       keyframe.imu = imu;
     }
     map.trajectory.emplace_back(keyframe.t_ns, Pose{});
@@ -56,6 +58,24 @@ TEST(MapMerging, OneCameraIsAssumed) {
   other = smallMap(5, "b");
   other.rig.T_b_c.q = Eigen::Quaterniond(Eigen::AngleAxisd(1, Eigen::Vector3d::UnitX()));
   EXPECT_THAT(mergeMaps(smallMap(7, "a"), other, {}).refusal, HasSubstr("different cameras"));
+}
+
+TEST(MapMerging, NumbersThatNoFlightHasAreRefused) {
+  const std::vector<std::function<void(LineMap&)>> damages{
+      [](LineMap& m) { m.rig.camera.fx = 0; },
+      [](LineMap& m) { m.rig.T_b_c.q.coeffs().setZero(); },
+      [](LineMap& m) { m.keyframes[1].T_w_b.p.x() = std::nan(""); },
+      [](LineMap& m) { m.keyframes[1].v_w_b.x() = 1e300; },
+      [](LineMap& m) { m.trajectory[2].second.q.coeffs() *= 2; },
+      [](LineMap& m) { m.pieces[0].last_ns += 100 * 86400 * kSecond; },
+      [](LineMap& m) { m.keyframes[1].t_ns += 2 * 86400 * kSecond; },
+      [](LineMap& m) { m.trajectory[2].first -= 2 * 86400 * kSecond; },
+      [](LineMap& m) { m.views[0].looks.t_ns -= 2 * 86400 * kSecond; }};
+  for (const auto& damage : damages) {
+    LineMap damaged = smallMap(5, "b");
+    damage(damaged);
+    EXPECT_THAT(mergeMaps(smallMap(7, "a"), damaged, {}).refusal, HasSubstr("numbers that no flight has"));
+  }
 }
 
 TEST(MapMerging, WithoutACommonPlaceThereIsNoMap) {

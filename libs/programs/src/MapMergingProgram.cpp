@@ -28,14 +28,15 @@ class MapMergingProgram {
   int run(int argc, const char* const* argv) {
     if (const auto exit_code = line_.parse(argc, argv, out_, err_)) return *exit_code;
     if (maps_.size() < 2) throw UsageError("merge takes two maps or more");
-    if (!overwrite_ && fs::exists(output_))
-      throw std::runtime_error(output_ + ": exists already; choose another name or add -w");
+    refuseExisting(output_);
+    for (std::size_t i = 0; i < maps_.size(); ++i) refuseExisting(trajectoryFile(i));
     MapMergingOptions options;
     if (!config_.empty()) readConfiguration(config_, options.configuration);
     for (const std::string& setting : settings_) setOption(setting, options.configuration);
     const StopSignals stop;
     LineMap map = namedMap(0);
     for (std::size_t i = 1; i < maps_.size(); ++i) map = merge(map, i, options, stop);
+    for (std::size_t i = 0; i < map.recordings.size(); ++i) refuseExisting(trajectoryFile(i));
     writeMap(map, output_);
     writeTrajectories(map);
     return 0;
@@ -106,15 +107,22 @@ class MapMergingProgram {
       out_ << "  " << apart << " pieces have no place in common with the others and keep their own frame\n";
   }
 
+  std::string trajectoryFile(std::size_t recording) const {
+    return fs::path(output_).replace_extension("." + std::to_string(recording + 1) + ".tum").string();
+  }
+
+  /// Before anything is written: nothing is left half done.
+  void refuseExisting(const std::string& path) const {
+    if (!overwrite_ && fs::exists(path))
+      throw std::runtime_error(path + ": exists already; choose another name or add -w");
+  }
+
   void writeTrajectories(const LineMap& map) const {
     for (std::size_t i = 0; i < map.recordings.size(); ++i) {
       std::vector<OdometryPose> poses;
       for (const auto& [t_ns, T_w_b] : trajectoryOf(map, static_cast<int>(i))) poses.push_back({t_ns, T_w_b});
-      const fs::path path = fs::path(output_).replace_extension("." + std::to_string(i + 1) + ".tum");
-      if (!overwrite_ && fs::exists(path))
-        throw std::runtime_error(path.string() + ": exists already; choose another name or add -w");
-      AtomicFile::writeWhole(path.string(), trajectoryText(poses));
-      if (!quiet_) out_ << path.string() << ": trajectory of " << map.recordings[i] << "\n";
+      AtomicFile::writeWhole(trajectoryFile(i), trajectoryText(poses));
+      if (!quiet_) out_ << trajectoryFile(i) << ": trajectory of " << map.recordings[i] << "\n";
     }
   }
 

@@ -511,6 +511,8 @@ TEST_F(LintelVioTest, WhatCannotBeMergedIsOneLineAndLeavesNothing) {
   fails({map, *work_ / "nothing.lintel", "-o", none, "-q"}, "nothing.lintel");
   fails({map, "-o", none}, "two maps", 2);
   fails({map, map}, "--output", 2);
+  std::ofstream(*work_ / "none.2.tum") << "of another merge\n";
+  fails({map, out("elsewhere") + "/map.lintel", "-o", none, "-q"}, "none.2.tum: exists already");
   const ProgramRun exists = runMap({"merge", map, map, "-o", map});
   EXPECT_EQ(exists.exit_code, 1);
   EXPECT_THAT(exists.err, HasSubstr("exists already"));
