@@ -34,6 +34,7 @@ namespace {
 
 // Window frames that a start is on trial: as long as the window reaches, and again.
 constexpr int kTrialFrames = 30;
+constexpr double kMostScaleSigma = 0.02;  // no prior takes points in before: it is linear, and as wrong as their scale
 /// Window frames that come in before a start is tried again in place of a wrong one: they show more than it was made
 /// of.
 constexpr int kFramesBeforeRetrial = 5;
@@ -323,8 +324,8 @@ void Estimator::Impl::dropOldest(WindowUpdate& update) {
   const FrameId leaving = window_.frames.front().id;
   sigma_->holdNext(window_);
   EstimatorParams params = params_;
-  if (tracks_since_start_ <= kTrialFrames)
-    params.landmarks.lasting_points = 0;  // linearised where the start went wrong
+  if (onTrial() || sigma_->relativeScaleSigma(window_) > kMostScaleSigma)
+    params.landmarks.lasting_points = 0;  // they would be linearised at a wrong scale
   marginaliseOldest(window_, params);
   retireTracks(window_, leaving, true, update);
   retireKeyframe(window_.frames.front(), update);

@@ -4,6 +4,7 @@
 #include <Eigen/Cholesky>
 #include <Eigen/Eigenvalues>
 #include <algorithm>
+#include <limits>
 
 #include "lintel/geometry/Rotation.h"
 
@@ -102,6 +103,22 @@ StateCovariance WindowCovariance::of(const SlidingWindow& window, const WindowFr
   half << halves(of_pose), halves(of_motion);  // motions come first in the equations: more to solve for
   half += halvesOfDrift(window) * N.transpose();
   return half.transpose() * half + N * independentDrift(window) * N.transpose();
+}
+
+double WindowCovariance::relativeScaleSigma(const SlidingWindow& window) const {
+  const WindowFrame& oldest = window.frames.front();
+  const auto moved = [&](const WindowFrame& frame) { return (frame.T_w_b().p - oldest.T_w_b().p).norm(); };
+  const WindowFrame& farthest =
+      *std::max_element(window.frames.begin(), window.frames.end(),
+                        [&](const WindowFrame& a, const WindowFrame& b) { return moved(a) < moved(b); });
+  const double distance = moved(farthest);
+  if (distance == 0) return std::numeric_limits<double>::infinity();
+  Eigen::MatrixXd along = Eigen::MatrixXd::Zero(1, kPoseTangent);
+  along.leftCols<3>() = (farthest.T_w_b().p - oldest.T_w_b().p).transpose() / distance;
+  Eigen::MatrixXd F = Eigen::MatrixXd::Zero(marginals_.size(), 1);
+  place(poseOf(farthest), along, F);
+  place(poseOf(oldest), -along, F);
+  return halves(F).norm() / distance;
 }
 
 void WindowCovariance::holdNext(SlidingWindow& window) const {

@@ -42,6 +42,10 @@ class WindowCovariance {
   /// Of pose and motion of a frame.
   StateCovariance of(const SlidingWindow& window, const WindowFrame& frame) const;
 
+  /// Standard deviation of the distance from the oldest frame to the one farthest from it, relative to that distance:
+  /// how well the window knows the scale of what it sees. Infinite while nothing has moved.
+  double relativeScaleSigma(const SlidingWindow& window) const;
+
   /// To be called before the oldest frame is marginalised: the next one is held from then on.
   void holdNext(SlidingWindow& window) const;
 

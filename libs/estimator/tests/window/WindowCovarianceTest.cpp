@@ -5,6 +5,8 @@
 
 #include <Eigen/Eigenvalues>
 #include <algorithm>
+#include <cmath>
+#include <limits>
 
 #include "DenseReference.h"
 #include "TestWindow.h"
@@ -94,6 +96,34 @@ TEST_F(WindowCovarianceTest, IsThatOfTheWholeProblemWithTheFirstPoseHeld) {
   const Eigen::MatrixXd expected = F * sigma * F.transpose();
   const Eigen::MatrixXd found = window.of(window_, newest).topLeftCorner<6, 6>();
   EXPECT_LT((found - expected).norm(), 1e-5 * expected.norm());
+}
+
+TEST_F(WindowCovarianceTest, ScaleIsKnownAsTheLongestDistanceIs) {
+  WindowFactors factors(window_, kParams.factors);
+  addAll(factors);
+  const double sigma = covariance(factors.factors()).relativeScaleSigma(window_);
+  factors.addGauge();
+  const NormalEquations eq = linearise(window_, factors.factors(), {});
+  const Eigen::MatrixXd covariance = solved(eq.H, Eigen::MatrixXd::Identity(eq.H.rows(), eq.H.cols()));
+  const Eigen::Vector3d oldest = window_.frames.front().T_w_b().p;
+  double longest = 0, expected = 0;
+  for (const WindowFrame& frame : window_.frames) {
+    const Eigen::Vector3d way = frame.T_w_b().p - oldest;
+    if (way.norm() <= longest) continue;
+    longest = way.norm();
+    const auto place = std::find(eq.blocks.begin(), eq.blocks.end(), BlockKey{BlockKey::kPose, frame.id});
+    const Eigen::Index at = eq.offsets[static_cast<std::size_t>(place - eq.blocks.begin())];
+    expected = std::sqrt(way.dot(covariance.block<3, 3>(at, at) * way)) / way.squaredNorm();
+  }
+  EXPECT_NEAR(sigma, expected, 0.01 * expected);
+}
+
+TEST_F(WindowCovarianceTest, AtRestNoScaleIsKnown) {
+  WindowFactors factors(window_, kParams.factors);
+  addAll(factors);
+  const WindowCovariance covariance = this->covariance(factors.factors());
+  for (WindowFrame& frame : window_.frames) frame.pose = window_.frames.front().pose;
+  EXPECT_EQ(covariance.relativeScaleSigma(window_), std::numeric_limits<double>::infinity());
 }
 
 TEST_F(WindowCovarianceTest, TheFirstPoseItselfHasNoneOfPositionAndYaw) {
