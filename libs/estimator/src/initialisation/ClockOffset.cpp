@@ -24,7 +24,6 @@ constexpr double kWidth_px = 2;            // of the robust loss
 constexpr std::size_t kMostRays = 30;      // of a pair
 constexpr std::size_t kLeastRays = 12;
 constexpr std::size_t kLeastPairs = 10;
-constexpr std::size_t kSearchPairs = 50;  // that the grid is searched with, before all decide
 constexpr double kGaps_s[] = {0.1, 0.3};  // between the frames of a pair
 
 std::int64_t nanoseconds(double seconds) { return std::llround(1e9 * seconds); }
@@ -98,42 +97,20 @@ class Fit {
   Eigen::Vector3d bias_ = Eigen::Vector3d::Zero();
 };
 
-using Grid = std::map<int, EpipolarSystem>;  // by steps
-
-int smallest(const Grid& grid) {
-  return std::min_element(grid.begin(), grid.end(),
-                          [](const auto& x, const auto& y) { return x.second.cost < y.second.cost; })
-      ->first;
-}
-
-void evaluate(int k, Fit& fit, Grid& grid) {
-  if (std::abs(k) <= kSteps && grid.count(k) == 0) grid[k] = fit.at(k * kStep_s);
-}
-
-/// The place of the smallest cost: of the coarse grid, then of every step around that.
-int searchGrid(Fit& fit) {
-  Grid grid;
-  for (int k = -kSteps; k <= kSteps; k += kCoarse) evaluate(k, fit, grid);
-  const int coarse = smallest(grid);
-  for (int k = coarse - kCoarse; k <= coarse + kCoarse; ++k) evaluate(k, fit, grid);
-  return smallest(grid);
-}
-
-/// From there down to a smallest cost, whose neighbours, where the range has them, are in `grid` too.
-int descend(int k, Fit& fit, Grid& grid) {
-  for (int before = k + 1; before != k;) {
-    before = k;
-    for (const int near : {k - 1, k, k + 1}) evaluate(near, fit, grid);
-    k = smallest(grid);
-  }
-  return k;
-}
-
-std::vector<TimedPair> evenlyChosen(const std::vector<TimedPair>& pairs, std::size_t most) {
-  const std::size_t step = (pairs.size() + most - 1) / most;
-  std::vector<TimedPair> chosen;
-  for (std::size_t i = 0; i < pairs.size(); i += step) chosen.push_back(pairs[i]);
-  return chosen;
+/// Evaluates the grid coarsely, then every step around the smallest cost; its place.
+int searchGrid(Fit& fit, std::map<int, EpipolarSystem>& grid) {
+  const auto evaluate = [&](int k) {
+    if (grid.count(k) == 0) grid[k] = fit.at(k * kStep_s);
+  };
+  const auto smallest = [&grid] {
+    return std::min_element(grid.begin(), grid.end(),
+                            [](const auto& x, const auto& y) { return x.second.cost < y.second.cost; })
+        ->first;
+  };
+  for (int k = -kSteps; k <= kSteps; k += kCoarse) evaluate(k);
+  const int coarse = smallest();
+  for (int k = std::max(-kSteps, coarse - kCoarse); k <= std::min(kSteps, coarse + kCoarse); ++k) evaluate(k);
+  return smallest();
 }
 
 }  // namespace
@@ -145,10 +122,9 @@ ClockOffset findClockOffset(const std::vector<FrameTracks>& frames, const ImuBat
   const std::vector<TimedPair> pairs = timedPairs(frames, path, rig);
   if (pairs.size() < kLeastPairs) return found;
   const double focal = rig.camera.meanFocal(), width_rad = kWidth_px / focal;
-  const std::vector<TimedPair> few = evenlyChosen(pairs, kSearchPairs);
-  Fit rough(few, path, width_rad), fit(pairs, path, width_rad);
-  Grid grid;
-  const int best_at = descend(searchGrid(rough), fit, grid);
+  Fit fit(pairs, path, width_rad);
+  std::map<int, EpipolarSystem> grid;  // by steps
+  const int best_at = searchGrid(fit, grid);
   const EpipolarSystem& best = grid.at(best_at);
   found.rms_px = focal * std::sqrt(best.sum / best.weights);
   if (std::abs(best_at) == kSteps) return found;

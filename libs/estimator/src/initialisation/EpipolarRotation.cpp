@@ -18,7 +18,7 @@ Eigen::Vector3d translationDirection(const std::vector<Eigen::Vector3d>& normals
     Eigen::Matrix3d M = Eigen::Matrix3d::Zero();
     for (const Eigen::Vector3d& n : normals) {
       const double e = round == 0 ? 0 : n.dot(t) / width;
-      M += (1 / (1 + e * e) * n) * n.transpose();
+      M += n * n.transpose() / (1 + e * e);
     }
     t = symmetricEigen<3>(M).vectors.col(0);
   }
