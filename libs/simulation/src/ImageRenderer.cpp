@@ -18,14 +18,6 @@ namespace {
 
 constexpr float kBackground = 0.02f;
 
-/// What shading needs of a patch, in floats.
-struct ShadedPatch {
-  Eigen::Vector3f normal;
-  float length_u, length_v, origin_u, origin_v, albedo;
-  const MipTexture* texture;
-  LightMap light;
-};
-
 }  // namespace
 
 class ImageRenderer::Impl {
@@ -75,6 +67,13 @@ class ImageRenderer::Impl {
   }
 
  private:
+  /// What shading needs of a patch, in floats.
+  struct ShadedPatch {
+    Eigen::Vector3f normal;
+    float length_u, length_v, origin_u, origin_v, albedo;
+    const MipTexture* texture;
+    LightMap light;
+  };
   struct View {
     Eigen::Vector3f origin;
     Eigen::Matrix3f R_w_c;
