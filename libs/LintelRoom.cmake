@@ -27,24 +27,43 @@ function(lintel_precompile TARGET FIRST)
   target_compile_options(${TARGET} PRIVATE $<$<CXX_COMPILER_ID:GNU>:-fpch-preprocess>)
 endfunction()
 
-# Four sources at a time: templates that they share are instantiated once.
+# GCC's garbage collection walks a precompiled header each time, a sixth of the time to compile: only above 600 MB.
+if(LINTEL_PRECOMPILE)
+  add_compile_options($<$<CXX_COMPILER_ID:GNU>:--param=ggc-min-heapsize=450000> $<$<CXX_COMPILER_ID:GNU>:--param=ggc-min-expand=30>)
+endif()
+
+# Several sources at a time: headers are read and templates that they share instantiated once.
 option(LINTEL_UNITY "Build faster by compiling sources of a room together" OFF)
 
-# lintel_unity(TARGET): TARGET is compiled so, if LINTEL_UNITY says it.
-function(lintel_unity TARGET)
+# lintel_unity(TARGET BATCH): TARGET is compiled so, BATCH sources at a time, if LINTEL_UNITY says it.
+function(lintel_unity TARGET BATCH)
   if(LINTEL_UNITY)
-    set_target_properties(${TARGET} PROPERTIES UNITY_BUILD ON UNITY_BUILD_BATCH_SIZE 4)
+    set_target_properties(${TARGET} PROPERTIES UNITY_BUILD ON UNITY_BUILD_BATCH_SIZE ${BATCH})
   endif()
+endfunction()
+
+# lintel_test_options(TARGET): how the sources of tests are compiled.
+function(lintel_test_options TARGET)
+  lintel_warnings(${TARGET})
+  target_link_libraries(${TARGET} PRIVATE Eigen3::Eigen GTest::gtest GTest::gmock)
+  # tests are small and run once: half of the time to compile them is optimisation
+  target_compile_options(${TARGET} PRIVATE $<$<CONFIG:Release>:-O1>)
+  lintel_precompile(${TARGET} geometry_tests ${LINTEL_PRECOMPILED} <gmock/gmock.h> <gtest/gtest.h>)
 endfunction()
 
 # lintel_test_executable(TARGET file…): a program of GoogleTest's cases.
 function(lintel_test_executable TARGET)
   add_executable(${TARGET} ${ARGN})
+  lintel_test_options(${TARGET})
+  target_link_libraries(${TARGET} PRIVATE GTest::gtest_main)
+endfunction()
+
+# lintel_tool(TARGET file…): a program that measures, not installed.
+function(lintel_tool TARGET)
+  add_executable(${TARGET} ${ARGN})
   lintel_warnings(${TARGET})
-  target_link_libraries(${TARGET} PRIVATE Eigen3::Eigen GTest::gtest GTest::gmock GTest::gtest_main)
-  # tests are small and run once: half of the time to compile them is optimisation
-  target_compile_options(${TARGET} PRIVATE $<$<CONFIG:Release>:-O1>)
-  lintel_precompile(${TARGET} geometry_tests ${LINTEL_PRECOMPILED} <gmock/gmock.h> <gtest/gtest.h>)
+  lintel_unity(${TARGET} 6)
+  lintel_precompile(${TARGET} lintel_geometry ${LINTEL_PRECOMPILED})
 endfunction()
 
 # lintel_allocator(TARGET): a program whose malloc is mimalloc's, although no object names it. Sanitizers bring their own.
@@ -87,14 +106,16 @@ function(lintel_cases TARGET NAME)
   endforeach()
 endfunction()
 
-# lintel_room(NAME SOURCES file… [ROOMS room…] [PRIVATE target…] [TESTS file…] [TEST_LINKS target…])
+# lintel_room(NAME SOURCES file… [ROOMS room…] [PRIVATE target…] [TESTS file…] [TEST_LINKS target…] [BATCH number])
 #
 # One room: the static library lintel_NAME (alias lintel::NAME) with its public headers in include/lintel/NAME.
 # ROOMS are rooms above it in LINTEL_ROOMS; anything else is refused. PRIVATE are third parties.
 # TESTS become the executable NAME_tests, every file of them known to ctest. Library and headers are installed, and
 # find_package(lintel) makes it lintel::NAME elsewhere, unless LINTEL_ROOMS_NOT_INSTALLED names the room.
+# BATCH: how many sources are compiled at a time (lintel_unity), 4 if it is not said; where each takes seconds and
+# hundreds of megabytes by itself, fewer.
 function(lintel_room NAME)
-  cmake_parse_arguments(ARG "" "" "SOURCES;ROOMS;PRIVATE;TESTS;TEST_LINKS" ${ARGN})
+  cmake_parse_arguments(ARG "" "BATCH" "SOURCES;ROOMS;PRIVATE;TESTS;TEST_LINKS" ${ARGN})
   if(ARG_UNPARSED_ARGUMENTS)
     message(FATAL_ERROR "lintel_room(${NAME}): unknown arguments ${ARG_UNPARSED_ARGUMENTS}")
   endif()
@@ -106,10 +127,13 @@ function(lintel_room NAME)
     endif()
   endforeach()
 
+  if(NOT ARG_BATCH)
+    set(ARG_BATCH 4)
+  endif()
   add_library(lintel_${NAME} STATIC ${ARG_SOURCES})
   add_library(lintel::${NAME} ALIAS lintel_${NAME})
   lintel_warnings(lintel_${NAME})
-  lintel_unity(lintel_${NAME})
+  lintel_unity(lintel_${NAME} ${ARG_BATCH})
   lintel_precompile(lintel_${NAME} lintel_geometry ${LINTEL_PRECOMPILED})
   target_include_directories(lintel_${NAME} PUBLIC
     $<BUILD_INTERFACE:${CMAKE_CURRENT_SOURCE_DIR}/include> $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}>)
@@ -124,7 +148,7 @@ function(lintel_room NAME)
 
   if(BUILD_TESTING AND ARG_TESTS)
     lintel_test_executable(${NAME}_tests ${ARG_TESTS})
-    lintel_unity(${NAME}_tests)
+    lintel_unity(${NAME}_tests ${ARG_BATCH})
     target_include_directories(${NAME}_tests PRIVATE ${CMAKE_CURRENT_SOURCE_DIR}/src ${CMAKE_CURRENT_SOURCE_DIR}/tests)
     target_link_libraries(${NAME}_tests PRIVATE lintel::${NAME} lintel_testing ${ARG_TEST_LINKS})
     lintel_cases(${NAME}_tests ${NAME} ${ARG_TESTS})

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <gtest/gtest.h>
 
+#include <Eigen/LU>
 #include <cmath>
+#include <vector>
 
 #include "TestFactors.h"
 #include "lintel/factors/ImageObservations.h"
@@ -164,18 +166,20 @@ TEST(LineEnd, BelongsToTheLineThatFitsTheWholeEdge) {
   correction[4] = truth.lens[0] - calibrated.lens[0];
   const Eigen::Vector2d from = truth.normalise({120, 40}), to = truth.normalise({640, 70});
   const int n = 200;
-  Eigen::MatrixXd A(n, 2);
-  Eigen::VectorXd y(n), x(n);
+  Eigen::Matrix2d H = Eigen::Matrix2d::Zero();
+  Eigen::Vector2d b = Eigen::Vector2d::Zero();
+  std::vector<double> x;
   for (int i = 0; i < n; ++i) {
     const Eigen::Vector2d edge = from + (i + 0.5) / n * (to - from);
     const Eigen::Vector2d seen = calibrated.normalise(truth.project(edge.homogeneous()));
-    A.row(i) << 1, seen.x();
-    x[i] = seen.x();
-    y[i] = seen.y();
+    const Eigen::Vector2d row(1, seen.x());
+    H += row * row.transpose();
+    b += row * seen.y();
+    x.push_back(seen.x());
   }
-  const Eigen::Vector2d line = A.colPivHouseholderQr().solve(y);
+  const Eigen::Vector2d line = H.inverse() * b;
   const auto pixel = [&](double at) { return calibrated.project(Eigen::Vector3d(at, line[0] + line[1] * at, 1)); };
-  const Eigen::Vector2d start_px = pixel(x[0]), end_px = pixel(x[n - 1]);
+  const Eigen::Vector2d start_px = pixel(x.front()), end_px = pixel(x.back());
   const auto [start, end] = makeLineEnds(calibrated, start_px, end_px, correction);
   const Eigen::Vector2d along = (to - from).normalized(), across(-along.y(), along.x());
   const auto error_px = [&](const Eigen::Vector2d& at) { return truth.fx * std::abs(across.dot(at - from)); };

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "lintel/inertial/TurnCheck.h"
 
-#include <Eigen/Cholesky>
 #include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
@@ -10,6 +9,7 @@
 #include "TurnFault.h"
 #include "lintel/core/Quantiles.h"
 #include "lintel/geometry/Rotation.h"
+#include "lintel/geometry/SmallMatrices.h"
 #include "lintel/inertial/GyroPath.h"
 
 namespace lintel {
@@ -92,7 +92,7 @@ TurnFit TurnCheck::fitAlong(const GyroPath& path, double offset_s) const {
         H += weight * s.x * s.x.transpose();
         b += weight * s.x * s.y[axis];
       }
-      parameters = H.ldlt().solve(b);
+      parameters = solveLdlt(H, b);
       for (const Sample& s : samples) sizes.push_back(std::abs(s.y[axis] - s.x.dot(parameters)) / s.sigma[axis]);
       scale = sizes.empty() ? 1 : std::max(1.0, 1.48 * median(sizes));
       covariance = scale * scale * H.inverse();

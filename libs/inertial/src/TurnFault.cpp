@@ -2,13 +2,13 @@
 #include "TurnFault.h"
 
 #include <Eigen/LU>
-#include <Eigen/SVD>
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdio>
 
 #include "lintel/geometry/Rotation.h"
+#include "lintel/geometry/SmallMatrices.h"
 
 namespace lintel {
 
@@ -28,8 +28,8 @@ double degreesBetween(const Eigen::Matrix3d& A, const Eigen::Matrix3d& B) {
 
 /// The orthogonal matrix that is nearest to a matrix; its determinant may be -1.
 Eigen::Matrix3d nearestOrthogonal(const Eigen::Matrix3d& M) {
-  const Eigen::JacobiSVD<Eigen::Matrix3d> svd(M, Eigen::ComputeFullU | Eigen::ComputeFullV);
-  return svd.matrixU() * svd.matrixV().transpose();
+  const SingularValues3 svd = singularValues(M);
+  return svd.U * svd.V.transpose();
 }
 
 /// Which columns of the file an IMU's axes are, for a matrix that leads from what the file says to what is: the nearest

@@ -3,13 +3,13 @@
 
 #include <gtest/gtest.h>
 
-#include <Eigen/Eigenvalues>
 #include <cmath>
 #include <functional>
 #include <random>
 
 #include "TestWindow.h"
 #include "landmarks/LineTriangulation.h"
+#include "lintel/geometry/SmallMatrices.h"
 
 namespace lintel {
 namespace {
@@ -53,7 +53,7 @@ TEST(LineUncertainty, WhatNobodySawIsHuge) {
 double worstSigma(const std::vector<Eigen::Vector3d>& errors) {
   Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();
   for (const Eigen::Vector3d& e : errors) covariance += e * e.transpose() / static_cast<double>(errors.size());
-  return std::sqrt(Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(covariance).eigenvalues()[2]);
+  return std::sqrt(symmetricEigen(covariance).values[2]);
 }
 
 /// The sigmas that a line gets against the scatter of the lines that noisy sightings give.
