@@ -202,6 +202,26 @@ void fitEnds(const Camera& calibrated, const Camera& camera, const Eigen::Vector
 
 }  // namespace
 
+Eigen::Vector3d RayObservation::corrected(const double* correction) const {
+  const CorrectionBlock change = Eigen::Map<const CorrectionBlock>(correction) - linearised_at;
+  Eigen::Vector3d moved = ray;
+  moved.head<2>() += correction_jacobian * change;
+  if (wide) moved.z() += z_jacobian.dot(change);
+  return moved;
+}
+
+Eigen::Matrix<double, 1, kIntrinsicsSize> RayObservation::alongJacobian(const Eigen::Vector3d& v) const {
+  Eigen::Matrix<double, 1, kIntrinsicsSize> J =
+      v.head<2>().transpose() * correction_jacobian.leftCols<kIntrinsicsSize>();
+  if (wide) J += v.z() * z_jacobian.leftCols<kIntrinsicsSize>();
+  return J;
+}
+
+double LineEnd::scale_px(const double* correction) const {
+  return linearised_scale_px *
+         (1 + log_scale_jacobian.dot(Eigen::Map<const CorrectionBlock>(correction) - linearised_at));
+}
+
 RayObservation makeObservation(const Camera& calibrated, const Eigen::Vector2d& px, const CorrectionBlock& correction) {
   const Camera camera = correctedCamera(calibrated, correction.data());
   RayObservation o = camera.wide() ? wideObservation(camera, camera.ray(px)) : linearised(camera, camera.normalise(px));

@@ -19,21 +19,10 @@ struct RayObservation {
   bool wide = false;
 
   /// The ray under a correction, to first order.
-  Eigen::Vector3d corrected(const double* correction) const {
-    const CorrectionBlock change = Eigen::Map<const CorrectionBlock>(correction) - linearised_at;
-    Eigen::Vector3d moved = ray;
-    moved.head<2>() += correction_jacobian * change;
-    if (wide) moved.z() += z_jacobian.dot(change);
-    return moved;
-  }
+  Eigen::Vector3d corrected(const double* correction) const;
 
   /// d (v . ray) / d intrinsics.
-  Eigen::Matrix<double, 1, kIntrinsicsSize> alongJacobian(const Eigen::Vector3d& v) const {
-    Eigen::Matrix<double, 1, kIntrinsicsSize> J =
-        v.head<2>().transpose() * correction_jacobian.leftCols<kIntrinsicsSize>();
-    if (wide) J += v.z() * z_jacobian.leftCols<kIntrinsicsSize>();
-    return J;
-  }
+  Eigen::Matrix<double, 1, kIntrinsicsSize> alongJacobian(const Eigen::Vector3d& v) const;
 };
 
 /// An observed end point of a line, and how many pixels a distance of 1 across the line is there. That scale moves with
@@ -44,10 +33,7 @@ struct LineEnd : RayObservation {
   Row log_scale_jacobian = Row::Zero();  ///< d log scale / d correction
 
   /// Under a correction, to first order [px].
-  double scale_px(const double* correction) const {
-    return linearised_scale_px *
-           (1 + log_scale_jacobian.dot(Eigen::Map<const CorrectionBlock>(correction) - linearised_at));
-  }
+  double scale_px(const double* correction) const;
 };
 
 /// How an observed pixel depends on the camera correction (intrinsics, by the camera model), about `correction`.
