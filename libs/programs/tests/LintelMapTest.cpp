@@ -119,6 +119,7 @@ TEST_F(LintelMapTest, WhatIsNotFiniteIsSaid) {
   LineMap map;
   map.lines.resize(2);
   map.lines[0].segment_w.end = {1, 2, 3};
+  map.lines[1].id = 1;
   map.lines[1].segment_w.end = {std::nan(""), 2, 3};
   writeMap(map, in("map.lintel"));
   EXPECT_EQ(run({in("map.lintel"), "-o", in("map.ply")}), 0);
