@@ -38,7 +38,7 @@ TEST_F(Pipeline, RawlogAndOneThreadGiveTheSameBytes) {
       << bytesOf(folder_ / "euroc2rawlog.err");
   ASSERT_EQ(runVio(folder_ / "recording.rawlog", "out_rawlog", "--threads 1 --export none"), 0)
       << bytesOf(folder_ / "lintel-vio.err");
-  for (const char* file : {"trajectory.tum", "trajectory_refined.tum"}) {
+  for (const char* file : {"trajectory.tum", "trajectory_refined.tum", "map.lintel"}) {
     EXPECT_FALSE(bytesOf(folder_ / "out" / file).empty());
     EXPECT_TRUE(bytesOf(folder_ / "out" / file) == bytesOf(folder_ / "out_rawlog" / file)) << file;
   }

@@ -43,7 +43,7 @@ std::string wrongTimes(const LineMap& map) {
       std::all_of(map.keyframes.begin(), map.keyframes.end(), [](const auto& k) { return isTime(k.t_ns); }) &&
       std::all_of(map.trajectory.begin(), map.trajectory.end(), [](const auto& pose) { return isTime(pose.first); }) &&
       std::all_of(map.views.begin(), map.views.end(), [](const MapView& view) { return isTime(view.looks.t_ns); });
-  return good ? "" : "has times that no clock shows";
+  return good ? "" : "has times that are out of range";
 }
 
 std::string wrongPieces(const LineMap& map) {
@@ -67,7 +67,7 @@ std::string wrongPieces(const LineMap& map) {
 
 std::string wrongSamples(const ImuBatch& samples) {
   for (const ImuSample& sample : samples) {
-    if (!isTime(sample.t_ns)) return "has times that no clock shows";
+    if (!isTime(sample.t_ns)) return "has times that are out of range";
     if (sample.t_ns > samples.front().t_ns + kLongestImu_ns) return "has an hour of IMU from one keyframe to the next";
   }
   return "";
@@ -81,7 +81,7 @@ std::string whatIsWrong(const LineMap& map) {
   const auto groups = static_cast<int>(map.groups.size());  // early files name none, though lines have numbers
   for (const MapLine& line : map.lines)
     if (line.group < -1 || (groups > 0 && line.group >= groups)) return "has a line in a group that does not exist";
-  if (!isRig(map.rig)) return "has a camera that there is not";
+  if (!isRig(map.rig)) return "has a camera whose numbers are out of range";
   if (!(std::abs(map.time_offset_s) < kLongestOffset_s)) return "has clocks that are an hour apart";
   const std::string times = wrongTimes(map);
   return times.empty() ? wrongPieces(map) : times;

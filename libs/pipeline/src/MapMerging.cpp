@@ -44,7 +44,8 @@ std::string objection(const LineMap& first, const LineMap& second) {
              " one keeps no views of its places: make it again, with loops.enabled and loops.keep_interval_s above 0";
   for (const LineMap* map : {&first, &second})
     if (isDamaged(*map))
-      return std::string("the ") + (map == &first ? "first" : "second") + " one holds numbers that no flight has";
+      return std::string("the ") + (map == &first ? "first" : "second") +
+             " one has poses, IMU samples or times that are out of range";
   if (isTheSame(first, second)) return "both are the map of one run";
   if (!ofOneCamera(first.rig, second.rig)) return "they were made with different cameras or calibrations";
   return {};

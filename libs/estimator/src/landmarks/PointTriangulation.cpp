@@ -74,8 +74,8 @@ CameraPoses::CameraPoses(const SlidingWindow& window) : window_(window) {
   }
 }
 
-const CameraPoses::Camera& CameraPoses::of(FrameId id) const {
-  return *std::find_if(poses_.begin(), poses_.end(), [id](const Camera& camera) { return camera.id == id; });
+const CameraPoses::FramePose& CameraPoses::of(FrameId id) const {
+  return *std::find_if(poses_.begin(), poses_.end(), [id](const FramePose& pose) { return pose.id == id; });
 }
 
 bool triangulatePoint(const CameraPoses& poses, const LandmarkParams& params, double sigma_px, PointTrack& track) {

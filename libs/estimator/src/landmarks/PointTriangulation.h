@@ -8,7 +8,8 @@
 
 namespace lintel {
 
-/// Poses of the window's cameras as they are now.
+/// Poses of the window's cameras as they are now, at the times of the stamps: worked out once for all points. A window
+/// may be given in its place where a single point is looked at.
 class CameraPoses {
  public:
   CameraPoses(const SlidingWindow& window);
@@ -18,14 +19,14 @@ class CameraPoses {
   const Pose& T_c_w(FrameId id) const { return of(id).T_c_w; }
 
  private:
-  struct Camera {
+  struct FramePose {
     FrameId id;
     Pose T_w_c, T_c_w;
   };
-  const Camera& of(FrameId id) const;
+  const FramePose& of(FrameId id) const;
 
   const SlidingWindow& window_;
-  std::vector<Camera> poses_;
+  std::vector<FramePose> poses_;
 };
 
 /// Inverse depth of a point from all its sightings with the window's poses: linear start, Gauss-Newton on the
