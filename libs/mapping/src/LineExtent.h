@@ -10,17 +10,29 @@
 
 namespace lintel {
 
-/// The stretch of a line that enough of its observations saw. `intervals`: (from, to) along the line [m], one per
-/// observation; `share`: of the observations, at least two of them. From the first to the last well-covered place, so
-/// that one observation that ran past the end does not lengthen the line. Empty when no place is covered well.
-std::optional<std::pair<double, double>> coveredStretch(const std::vector<std::pair<double, double>>& intervals,
-                                                        double share);
+/// What an observation saw of a line, from < to along it [m]. An end at the border of the image is open: the line may
+/// go on where the camera does not see it.
+struct SeenPiece {
+  double from = 0, to = 0;
+  bool from_open = false, to_open = false;
+};
+
+/// The stretch of a line that at least two observations saw, and `share` of those that would have seen it: the ones
+/// that end before a place without being cut off by the image's border speak against it. From the first to the last
+/// well-covered place, so that one observation that ran past the end does not lengthen the line. Empty when no place is
+/// covered well.
+std::optional<std::pair<double, double>> coveredStretch(const std::vector<SeenPiece>& pieces, double share);
 
 /// From where to where a line was seen, metres from its middle along its direction, from < to. Each track of a merged
 /// line gives its coveredStretch(): a piece that was seen less often than another still counts, a single view that ran
 /// past the end does not.
 std::optional<std::pair<double, double>> seenStretch(const KeyframeCameras& cameras, const LineRecord& line,
                                                      double share);
+
+/// The piece of a stretch where the standard deviation of the line's position is at most `most_m`, if it is at most
+/// `best_most_m` somewhere on the stretch; else empty.
+std::optional<std::pair<double, double>> knownPiece(const LineEstimate& line, const std::pair<double, double>& stretch,
+                                                    double most_m, double best_most_m);
 
 /// The drawn segment; start and end correspond to those of the first inlier view.
 Segment3 segmentOf(const KeyframeCameras& cameras, const LineRecord& line, const std::pair<double, double>& stretch);

@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 namespace lintel {
 namespace {
 
@@ -13,17 +15,13 @@ TEST(CoveredStretch, IsWhatTwoObservationsShare) {
   EXPECT_EQ(coveredStretch({{0, 3}, {0, 3}}, 0.2), Stretch(0, 3));
 }
 
-TEST(CoveredStretch, TheDirectionOfAnObservationDoesNotMatter) {
-  EXPECT_EQ(coveredStretch({{3, 0}, {1, 5}, {5, 1}}, 0.2), Stretch(1, 5));
-}
-
 TEST(CoveredStretch, OneThatRanPastTheEndDoesNotLengthenTheLine) {
   EXPECT_EQ(coveredStretch({{0, 2}, {0, 2}, {0, 2}, {0, 90}, {-7, 2}}, 0.2), Stretch(0, 2));
 }
 
 TEST(CoveredStretch, TheShareGrowsWithTheObservations) {
   // ten observations at a share of 0.3: three are needed
-  std::vector<Stretch> seen(7, {0, 1});
+  std::vector<SeenPiece> seen(7, {0, 1});
   seen.insert(seen.end(), {{0, 2}, {0, 2}, {0, 3}});
   EXPECT_EQ(coveredStretch(seen, 0.3), Stretch(0, 2));
   EXPECT_EQ(coveredStretch(seen, 0.05), Stretch(0, 2)) << "at least two are needed whatever the share";
@@ -36,12 +34,66 @@ TEST(CoveredStretch, AGapBetweenWellSeenPiecesIsBridged) {
 
 TEST(CoveredStretch, NothingWhereNothingIsSharedOrLong) {
   EXPECT_FALSE(coveredStretch({}, 0.2));
-  EXPECT_FALSE(coveredStretch({{0, 5}}, 0.2)) << "one observation is no evidence";
+  EXPECT_FALSE(coveredStretch({SeenPiece{0, 5}}, 0.2)) << "one observation is no evidence";
   EXPECT_FALSE(coveredStretch({{0, 1}, {2, 3}}, 0.2));
   EXPECT_FALSE(coveredStretch({{1, 1}, {1, 1}}, 0.2)) << "no length";
 }
 
+TEST(CoveredStretch, AViewThatEndsAtTheImagesBorderSaysNothingOfWhatIsBeyond) {
+  // ten views saw the first metre and two the second
+  const auto seen = [](bool cut_off) {
+    std::vector<SeenPiece> pieces(10, {0, 1, false, cut_off});
+    pieces.insert(pieces.end(), {{0.5, 2}, {0.5, 2}});
+    return pieces;
+  };
+  EXPECT_EQ(coveredStretch(seen(false), 0.3), Stretch(0, 1)) << "ten of twelve say that it ends there";
+  EXPECT_EQ(coveredStretch(seen(true), 0.3), Stretch(0, 2));
+}
+
+TEST(CoveredStretch, OpenAtTheOtherEnd) {
+  std::vector<SeenPiece> pieces(10, {1, 2, true, false});
+  pieces.insert(pieces.end(), {{0, 1.5}, {0, 1.5}});
+  EXPECT_EQ(coveredStretch(pieces, 0.3), Stretch(0, 2));
+  for (SeenPiece& piece : pieces) piece.from_open = false;
+  EXPECT_EQ(coveredStretch(pieces, 0.3), Stretch(1, 2));
+}
+
 TEST(CoveredStretch, PiecesThatOnlyTouchShareNoLength) { EXPECT_FALSE(coveredStretch({{0, 1}, {1, 2}}, 0.2)); }
+
+/// 1 cm across at its middle, growing by 1 cm a metre (in quadrature) to both sides.
+LineEstimate estimateWith(double sigma_m, double sigma_rad) {
+  LineEstimate line;
+  line.covariance.diagonal() << sigma_m * sigma_m, sigma_m * sigma_m, sigma_rad * sigma_rad, sigma_rad * sigma_rad;
+  return line;
+}
+
+TEST(KnownPiece, AllOfALineThatIsKnownUpToItsEnds) {
+  EXPECT_EQ(knownPiece(estimateWith(0.01, 0.01), {-1, 2}, 0.03, 0.02), Stretch(-1, 2));
+}
+
+TEST(KnownPiece, EndsWhereThePositionIsNotKnownAnyMore) {
+  // sqrt(1 + s^2) cm = 2 cm at s = sqrt(3) m
+  const auto piece = knownPiece(estimateWith(0.01, 0.01), {-1, 5}, 0.02, 0.015);
+  ASSERT_TRUE(piece);
+  EXPECT_EQ(piece->first, -1);
+  EXPECT_NEAR(piece->second, std::sqrt(3.0), 0.002);
+}
+
+TEST(KnownPiece, TheBestPlaceNeedNotBeTheMiddle) {
+  // position and direction are correlated: smallest at s = 4 m
+  LineEstimate line = estimateWith(0.041231, 0.01);
+  line.covariance.topRightCorner<2, 2>() = line.covariance.bottomLeftCorner<2, 2>() =
+      -4e-4 * Eigen::Matrix2d::Identity();
+  const auto piece = knownPiece(line, {-2, 10}, 0.02, 0.015);
+  ASSERT_TRUE(piece);
+  EXPECT_NEAR(piece->first, 4 - std::sqrt(3.0), 0.005);
+  EXPECT_NEAR(piece->second, 4 + std::sqrt(3.0), 0.005);
+}
+
+TEST(KnownPiece, NothingOfALineThatIsNowhereKnownWellEnough) {
+  EXPECT_FALSE(knownPiece(estimateWith(0.016, 0.01), {-1, 5}, 0.02, 0.015));
+  EXPECT_FALSE(knownPiece(estimateWith(0.001, 0.01), {5, 9}, 0.02, 0.015)) << "known well where it was not seen";
+}
 
 }  // namespace
 }  // namespace lintel

@@ -75,8 +75,9 @@ class LintelVioTest : public testing::Test {
   /// The recording as a rawlog with its images inside, made when it is first asked for.
   static std::string embeddedRawlog() {
     const std::string rawlog = *work_ / "embedded.rawlog";
-    if (!fs::exists(rawlog))
+    if (!fs::exists(rawlog)) {
       EXPECT_EQ(runConverter({"-q", "--embed", "-z", "1", "-i", recording(), "-o", rawlog}).exit_code, 0);
+    }
     return rawlog;
   }
   /// A run that broke off: what was computed until then is there and fits together.

@@ -12,7 +12,7 @@ struct DensifyParams {
   SegmentParams segments;
   double interval_s = 0.2;         ///< between keyframes whose images are searched, at least
   int views = 30;                  ///< keyframes in which a candidate is looked for, of those that see the same points
-  int partners = 6;                ///< of these: with whose segments a segment is paired
+  int partners = 12;               ///< of these: with whose segments a segment is paired
   double tolerance_px = 2;         ///< between an edge and a projected candidate
   double least_cover = 0.5;        ///< of a candidate's length in an image, on edges: less does not support it
   int min_keyframes = 4;           ///< that support a line
