@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include "lintel/geometry/Frames.h"
+#include "lintel/geometry/Rotation.h"
 #include "lintel/mapping/BatchRefinement.h"
 
 namespace lintel {
@@ -15,7 +16,7 @@ class RefinedTrajectoryTest : public testing::Test {
   static constexpr double kAcceleration = 2;
 
   RefinedTrajectoryTest() {
-    auto imu = std::make_shared<Preintegration>(ImuBias{}, ImuNoise{1e-3, 1e-5, 1e-2, 1e-4});
+    auto imu = std::make_shared<Preintegration>(ImuBias{}, ImuNoise{2e-4, 1e-5, 2e-3, 1e-4});
     ImuBatch samples;
     for (int i = 0; i <= 200; ++i) samples.push_back({kSecond / 200 * i, {0, 0, 0}, {kAcceleration, 0, kGravity}});
     imu->append(samples);
@@ -41,8 +42,8 @@ TEST_F(RefinedTrajectoryTest, TheImuCarriesStatesBetweenKeyframes) {
     const double t = 0.1 * i;
     EXPECT_EQ(refined[static_cast<std::size_t>(i)].first, kSecond / 10 * i);
     EXPECT_LT((refined[static_cast<std::size_t>(i)].second.p - Eigen::Vector3d(kAcceleration / 2 * t * t, 0, 0)).norm(),
-              1e-9)
-        << "the causal jitter is gone";
+              2e-4)
+        << "of the causal jitter of 3 cm next to nothing is left";
   }
 }
 
@@ -51,8 +52,8 @@ TEST_F(RefinedTrajectoryTest, WhatIsMissingIsSpreadOverTheInterval) {
   moved[1].T_w_b.p += Eigen::Vector3d(0, 0.1, 0);
   const auto refined = refinedTrajectory(causal_, moved);
   EXPECT_LT(refined[0].second.p.norm(), 1e-9);
-  EXPECT_NEAR(refined[5].second.p.y(), 0.05, 1e-9);  // half way by symmetry
-  EXPECT_NEAR(refined[1].second.p.y(), 0.1 * (3 * 0.01 - 2 * 0.001), 1e-9) << "no kink at the keyframe";
+  EXPECT_NEAR(refined[5].second.p.y(), 0.05, 2e-4);  // half way by symmetry
+  EXPECT_NEAR(refined[1].second.p.y(), 0.1 * (3 * 0.01 - 2 * 0.001), 2e-4) << "no kink at the keyframe";
   EXPECT_NEAR(refined[10].second.p.y(), 0.1, 1e-9);
 }
 
@@ -70,6 +71,43 @@ TEST_F(RefinedTrajectoryTest, WithoutImuFramesMoveWithTheKeyframeBefore) {
   const auto refined = refinedTrajectory(causal_, moved);
   EXPECT_NEAR(refined[7].second.p.z(), 0.2, 1e-9);
   EXPECT_NEAR(refined[11].second.p.z(), 0, 1e-9);
+}
+
+/// At rest for ten seconds between two keyframes, with an IMU whose angular rate errs: its bias changes on the way.
+class RestBetweenKeyframesTest : public testing::Test {
+ protected:
+  RestBetweenKeyframesTest() {
+    auto imu = std::make_shared<Preintegration>(ImuBias{}, ImuNoise{1.4e-3, 1e-5, 1.6e-2, 1e-4});
+    ImuBatch samples;
+    for (int i = 0; i <= 2000; ++i)
+      samples.push_back({kSecond / 200 * i, {i < 1000 ? 0.002 : -0.002, 0, 0}, {0, 0, kGravity}});
+    imu->append(samples);
+    causal_.keyframes.resize(2);
+    causal_.keyframes[1].id = 1;
+    causal_.keyframes[1].t_ns = 10 * kSecond;
+    causal_.keyframes[1].imu = imu;
+    for (int i = 0; i <= 100; ++i) causal_.trajectory.emplace_back(kSecond / 10 * i, Pose{});
+  }
+  MapMaterial causal_;
+};
+
+TEST_F(RestBetweenKeyframesTest, WhereTheImuDriftsTheImagesOfTheCausalTrajectoryDecide) {
+  const auto refined = refinedTrajectory(causal_, causal_.keyframes);
+  ASSERT_EQ(refined.size(), 101u);
+  for (const auto& [t_ns, T_w_b] : refined)
+    EXPECT_LT(T_w_b.p.norm(), 0.01) << 1e-9 * static_cast<double>(t_ns) << " s; the IMU alone leads 20 cm away";
+}
+
+TEST_F(RestBetweenKeyframesTest, TheCausalWayIsBentToMeetTheRefinedKeyframes) {
+  std::vector<RetiredKeyframe> moved = causal_.keyframes;
+  moved[0].T_w_b.q = expRotation(Eigen::Vector3d(0, 0, M_PI / 2));
+  moved[0].T_w_b.p = {1, 0, 0};
+  moved[1].T_w_b.q = moved[0].T_w_b.q;
+  moved[1].T_w_b.p = {1, 0.1, 0};
+  const auto refined = refinedTrajectory(causal_, moved);
+  EXPECT_LT((refined.front().second.p - moved[0].T_w_b.p).norm(), 1e-9);
+  EXPECT_LT((refined[50].second.p - Eigen::Vector3d(1, 0.05, 0)).norm(), 0.01);
+  EXPECT_LT((refined.back().second.p - moved[1].T_w_b.p).norm(), 1e-9);
 }
 
 }  // namespace
