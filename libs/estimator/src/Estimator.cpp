@@ -70,7 +70,8 @@ class Estimator::Impl {
 
  private:
   bool appendImu(const FrameTracks& tracks, const ImuBatch& imu);
-  ImuNoise noise() const;
+  ImuNoise noise(const ImuNoise& measured) const;
+  void raiseNoise();
   WindowUpdate skipFrame(const FrameTracks& tracks);
   void addFrame(const FrameTracks& tracks);
   void remember(const FrameTracks& tracks);
@@ -147,8 +148,7 @@ bool Estimator::Impl::appendImu(const FrameTracks& tracks, const ImuBatch& imu) 
 }
 
 /// Densities with a scale of 1 are checked against what the samples show; others are meant as they are given.
-ImuNoise Estimator::Impl::noise() const {
-  const ImuNoise measured = effectiveNoise(rig_.imu_noise, noise_);
+ImuNoise Estimator::Impl::noise(const ImuNoise& measured) const {
   ImuNoise noise = rig_.imu_noise;
   const FactorParams& p = params_.factors;
   if (p.gyro_noise_scale == 1) noise.gyro_noise = measured.gyro_noise;
@@ -158,12 +158,20 @@ ImuNoise Estimator::Impl::noise() const {
   return scaled(noise, p);
 }
 
+/// That white noise is more than a data sheet says is known after some frames: those before get it as well.
+void Estimator::Impl::raiseNoise() {
+  const ImuNoise least = noise(whiteNoise(rig_.imu_noise, noise_));
+  for (WindowFrame& frame : window_.frames)
+    if (frame.imu) frame.imu->raiseNoise(least);
+}
+
 WindowUpdate Estimator::Impl::skipFrame(const FrameTracks& tracks) {
   WindowUpdate update;
   update.t_ns = tracks.t_ns;
   update.reason = "between window frames";
   if (!tracking_) return update;
-  Preintegration imu(biasOf(window_.frames.back().motion.data()), noise(), rig_.gravity_m_s2);
+  Preintegration imu(biasOf(window_.frames.back().motion.data()), noise(effectiveNoise(rig_.imu_noise, noise_)),
+                     rig_.gravity_m_s2);
   imu.append(pending_imu_);
   const InertialState state = propagated(stateOf(window_.frames.back()), imu);
   update.T_w_b = state.T_w_b;
@@ -187,7 +195,8 @@ void Estimator::Impl::addFrame(const FrameTracks& tracks) {
   frame.t_ns = tracks.t_ns;
   if (!window_.frames.empty()) {
     const WindowFrame& before = window_.frames.back();
-    frame.imu = std::make_shared<Preintegration>(biasOf(before.motion.data()), noise(), rig_.gravity_m_s2);
+    frame.imu = std::make_shared<Preintegration>(biasOf(before.motion.data()),
+                                                 noise(effectiveNoise(rig_.imu_noise, noise_)), rig_.gravity_m_s2);
     frame.imu->append(pending_imu_);
     const InertialState state = propagated(stateOf(before), *frame.imu);
     frame.pose = toBlock(state.T_w_b);
@@ -198,6 +207,7 @@ void Estimator::Impl::addFrame(const FrameTracks& tracks) {
   newest_t_ns_ = tracks.t_ns;
   if (!pending_imu_.empty()) frame.gyro = pending_imu_.back().gyro;
   window_.addFrame(std::move(frame), tracks);
+  raiseNoise();
   unroll(window_);
 }
 

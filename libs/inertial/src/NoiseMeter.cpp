@@ -4,13 +4,18 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <limits>
+#include <vector>
 
 namespace lintel {
 
 namespace {
 
 constexpr double kSpan_s = 2, kLeast_s = 0.25;
-constexpr double kHidden = 3;  // how much more white noise there may be than the samples show
+constexpr double kHidden = 3;    // how much more white noise there may be than the samples show
+constexpr double kAlike = 1.25;  // white noise of two seconds: densities of means differ by a tenth by chance
+constexpr double kWhiteFor_s = 0.5;
+constexpr double kUnderstated = 1.5;  // a data sheet is taken by its word before
 constexpr double kVibrationShare = 0.15;
 constexpr double kScaleError = 0.002;
 constexpr double kScaleErrorLasts_s = 1;
@@ -24,9 +29,54 @@ constexpr Range kGyroNoise{5e-5, 3e-3}, kAccelNoise{5e-4, 3e-2}, kGyroWalk{1e-5,
 
 double seconds(const ImuSample& from, const ImuSample& to) { return 1e-9 * static_cast<double>(to.t_ns - from.t_ns); }
 
-double white(double given, const Range& range, double measured) {
-  const double most = std::max(range.low, std::min(range.high, kHidden * measured));
-  return Range{range.low, most}.clamp(given);
+/// `quietest`: the smallest density that was measured; `shown`: that of white noise, if there was any. White noise is
+/// always there: what was larger than the quietest was something else.
+double white(double given, const Range& range, double quietest, const std::optional<double>& shown) {
+  const double most = std::max(range.low, std::min(range.high, kHidden * quietest));
+  const double value = Range{range.low, most}.clamp(given);
+  const bool understated = shown && *shown > kUnderstated * value && *shown < kAlike * quietest;
+  return understated ? range.clamp(*shown) : value;
+}
+
+/// White density that the means of `n` samples show by their deviations from the line through their neighbours.
+double densityOfMeans(const std::deque<ImuSample>& samples, Eigen::Vector3d ImuSample::*values, std::size_t n,
+                      double period_s) {
+  std::vector<Eigen::Vector3d> means;
+  for (std::size_t i = 0; i + n <= samples.size(); i += n) {
+    Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+    for (std::size_t k = i; k < i + n; ++k) sum += samples[k].*values;
+    means.push_back(sum / static_cast<double>(n));
+  }
+  if (means.size() < 3) return std::numeric_limits<double>::infinity();
+  double squares = 0;
+  for (std::size_t i = 2; i < means.size(); ++i)
+    squares += (means[i - 1] - 0.5 * (means[i - 2] + means[i])).squaredNorm();
+  constexpr double kSquares = 3 * 1.5;  // three axes; variances 1 + 1/4 + 1/4
+  return std::sqrt(squares / (kSquares * static_cast<double>(means.size() - 2)) * static_cast<double>(n) * period_s);
+}
+
+/// The density of white noise; empty where the noise is not white.
+std::optional<double> whiteDensity(const std::deque<ImuSample>& samples, Eigen::Vector3d ImuSample::*values,
+                                   double period_s) {
+  double low = std::numeric_limits<double>::infinity(), high = 0, sum = 0;
+  for (const std::size_t n : {1, 2, 4}) {
+    const double density = densityOfMeans(samples, values, n, period_s);
+    low = std::min(low, density), high = std::max(high, density), sum += density;
+  }
+  if (!(high < kAlike * low)) return std::nullopt;
+  return sum / 3;
+}
+
+/// Takes a density down once noise has been white for long enough.
+void keepSmallest(const std::optional<double>& density, std::int64_t now_ns, std::int64_t& since_ns,
+                  std::optional<double>& smallest) {
+  if (!density) {
+    since_ns = -1;
+    return;
+  }
+  if (since_ns < 0) since_ns = now_ns;
+  if (1e-9 * static_cast<double>(now_ns - since_ns) < kWhiteFor_s) return;
+  smallest = std::min(smallest.value_or(*density), *density);
 }
 
 double sum(double white, double vibration, double motion) {
@@ -86,29 +136,44 @@ void NoiseMeter::measure() {
   if (!quietest_) quietest_ = seen;
   quietest_->gyro_density = std::min(quietest_->gyro_density, seen.gyro_density);
   quietest_->accel_density = std::min(quietest_->accel_density, seen.accel_density);
+  measureWhite(period_s);
+}
+
+void NoiseMeter::measureWhite(double period_s) {
+  const std::int64_t now_ns = samples_.back().t_ns;
+  const std::optional<double> gyro = whiteDensity(samples_, &ImuSample::gyro, period_s);
+  keepSmallest(gyro, now_ns, gyro_white_since_ns_, white_gyro_);
+  const std::optional<double> accel = gyro ? whiteDensity(samples_, &ImuSample::accel, period_s) : std::nullopt;
+  keepSmallest(accel, now_ns, accel_white_since_ns_, white_accel_);
+}
+
+ImuNoise whiteNoise(const ImuNoise& given, const NoiseMeter& meter) {
+  ImuNoise noise{kGyroNoise.clamp(given.gyro_noise), kGyroWalk.clamp(given.gyro_walk),
+                 kAccelNoise.clamp(given.accel_noise), kAccelWalk.clamp(given.accel_walk)};
+  if (!meter.quietest()) return noise;
+  const SampledNoise& quiet = *meter.quietest();
+  noise.gyro_noise = white(given.gyro_noise, kGyroNoise, quiet.gyro_density, meter.whiteGyro());
+  noise.accel_noise = white(given.accel_noise, kAccelNoise, quiet.accel_density, meter.whiteAccel());
+  return noise;
 }
 
 ImuNoise effectiveNoise(const ImuNoise& given, const NoiseMeter& meter) {
-  ImuNoise noise{kGyroNoise.clamp(given.gyro_noise), kGyroWalk.clamp(given.gyro_walk),
-                 kAccelNoise.clamp(given.accel_noise), kAccelWalk.clamp(given.accel_walk)};
+  ImuNoise noise = whiteNoise(given, meter);
   if (!meter.now()) return noise;
-  const SampledNoise &now = *meter.now(), &quiet = *meter.quietest();
-  noise.gyro_noise = sum(white(given.gyro_noise, kGyroNoise, quiet.gyro_density), now.gyro_density, now.gyro_motion);
-  noise.accel_noise =
-      sum(white(given.accel_noise, kAccelNoise, quiet.accel_density), now.accel_density, now.accel_motion);
+  const SampledNoise& now = *meter.now();
+  noise.gyro_noise = sum(noise.gyro_noise, now.gyro_density, now.gyro_motion);
+  noise.accel_noise = sum(noise.accel_noise, now.accel_density, now.accel_motion);
   return noise;
 }
 
 std::string noiseRemark(const ImuNoise& given, const NoiseMeter& meter) {
   if (!meter.quietest()) return {};
-  const SampledNoise& quiet = *meter.quietest();
+  const ImuNoise taken = whiteNoise(given, meter);
   const std::string parts[] = {
-      remark("gyroscope_noise_density", given.gyro_noise, white(given.gyro_noise, kGyroNoise, quiet.gyro_density),
-             "rad/s/sqrt(Hz)"),
-      remark("accelerometer_noise_density", given.accel_noise,
-             white(given.accel_noise, kAccelNoise, quiet.accel_density), "m/s^2/sqrt(Hz)"),
-      remark("gyroscope_random_walk", given.gyro_walk, kGyroWalk.clamp(given.gyro_walk), "rad/s^2/sqrt(Hz)"),
-      remark("accelerometer_random_walk", given.accel_walk, kAccelWalk.clamp(given.accel_walk), "m/s^3/sqrt(Hz)")};
+      remark("gyroscope_noise_density", given.gyro_noise, taken.gyro_noise, "rad/s/sqrt(Hz)"),
+      remark("accelerometer_noise_density", given.accel_noise, taken.accel_noise, "m/s^2/sqrt(Hz)"),
+      remark("gyroscope_random_walk", given.gyro_walk, taken.gyro_walk, "rad/s^2/sqrt(Hz)"),
+      remark("accelerometer_random_walk", given.accel_walk, taken.accel_walk, "m/s^3/sqrt(Hz)")};
   std::string all;
   for (const std::string& part : parts)
     if (!part.empty()) all += (all.empty() ? "" : "; ") + part;

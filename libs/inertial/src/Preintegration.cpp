@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "lintel/inertial/Preintegration.h"
 
+#include <algorithm>
+
 #include "lintel/geometry/Rotation.h"
 
 namespace lintel {
@@ -38,6 +40,14 @@ void Preintegration::repropagate(const ImuBias& bias) {
   bias_ = bias;
   reset();
   for (std::size_t i = 1; i < samples_.size(); ++i) integrate(samples_[i - 1], samples_[i]);
+}
+
+void Preintegration::raiseNoise(const ImuNoise& least) {
+  const ImuNoise raised{std::max(noise_.gyro_noise, least.gyro_noise), std::max(noise_.gyro_walk, least.gyro_walk),
+                        std::max(noise_.accel_noise, least.accel_noise), std::max(noise_.accel_walk, least.accel_walk)};
+  if (raised.gyro_noise == noise_.gyro_noise && raised.accel_noise == noise_.accel_noise) return;
+  noise_ = raised;
+  repropagate(bias_);
 }
 
 void Preintegration::integrate(const ImuSample& s0, const ImuSample& s1) {

@@ -27,6 +27,8 @@ constexpr double kSilent_rad_s = 1e-3;     // less than any gyroscope's noise: v
 constexpr double kNoiseMisses = 0.17, kLargestMissed = 0.5;
 constexpr double kUnrelatedMisses = 0.8;  // of turns that have nothing in common it is 1
 constexpr double kClearlyLess = 0.5;
+constexpr double kShown =
+    10;  // standard deviations of an entry of M: hundreds of offsets are tried, noise reaches five
 constexpr double kSearchedBefore_s = 0.1;  // by ClockOffset, before the start
 constexpr double kLongestSearch_s = 10, kShareOfSpan = 0.5, kSearchStep_s = 0.04;
 constexpr int kRounds = 4;
@@ -38,6 +40,9 @@ struct Sample {
 };
 
 bool tells(const TurnFit& fit) { return fit.compared >= kLeastCompared; }
+
+/// Whether the images' turns depend on the gyroscope's at all.
+bool related(const TurnFit& fit) { return (fit.M.array().abs() > kShown * fit.sigma.array()).any(); }
 
 /// Whether the camera turns visibly about an axis, and goes on to or did before: wrong turns come one by one.
 bool turns(const std::vector<Sample>& samples, std::size_t k, int axis, double bias) {
@@ -127,7 +132,7 @@ TurnFit TurnCheck::bestFit() const {
   const double reach_s = std::min(kLongestSearch_s, kShareOfSpan * span_s);
   const auto compare = [&](double offset_s) {
     const TurnFit there = fitAlong(path, offset_s);
-    if (tells(there) && there.missed < best.missed) best = there;
+    if (tells(there) && related(there) && there.missed < best.missed) best = there;
   };
   for (double offset_s = kSearchStep_s; offset_s < reach_s; offset_s += kSearchStep_s)
     for (const double side : {-1.0, 1.0}) compare(side * offset_s);

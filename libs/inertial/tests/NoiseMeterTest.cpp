@@ -65,6 +65,29 @@ TEST(EffectiveNoise, KeepsWhatAgreesAndReplacesNonsense) {
   EXPECT_GE(effectiveNoise(nonsense, meter).gyro_noise, 5e-5);
 }
 
+TEST(NoiseMeter, WhiteNoiseIsKnownFromVibrationAndMotion) {
+  const NoiseMeter white = measure(3);
+  ASSERT_TRUE(white.whiteGyro());
+  ASSERT_TRUE(white.whiteAccel());
+  EXPECT_NEAR(*white.whiteGyro(), kTrue.gyro_noise, 0.15 * kTrue.gyro_noise);
+  EXPECT_NEAR(*white.whiteAccel(), kTrue.accel_noise, 0.15 * kTrue.accel_noise);
+  const NoiseMeter shaken = measure(3, 0.5);
+  ASSERT_TRUE(shaken.whiteGyro());
+  EXPECT_FALSE(shaken.whiteAccel()) << "vibration at 83 Hz has another density in means of four samples";
+  EXPECT_FALSE(measure(0.4).whiteGyro()) << "it may be chance";
+}
+
+TEST(EffectiveNoise, ADataSheetThatUnderstatesWhiteNoiseIsCorrected) {
+  const NoiseMeter meter = measure(3);
+  ImuNoise understated = kTrue;
+  understated.gyro_noise /= 4, understated.accel_noise /= 4;
+  const ImuNoise taken = effectiveNoise(understated, meter), right = effectiveNoise(kTrue, meter);
+  EXPECT_NEAR(taken.gyro_noise, right.gyro_noise, 0.2 * right.gyro_noise);
+  EXPECT_NEAR(taken.accel_noise, right.accel_noise, 0.2 * right.accel_noise);
+  EXPECT_NE(noiseRemark(understated, meter).find("gyroscope_noise_density: 5e-05"), std::string::npos)
+      << noiseRemark(understated, meter);
+}
+
 TEST(EffectiveNoise, VibrationCountsAndTheQuietTimeIsRemembered) {
   const ImuNoise quiet = effectiveNoise(kTrue, measure(3));
   const NoiseMeter meter = measure(6, 2, 3);

@@ -56,6 +56,18 @@ TEST(Preintegration, TwoPartsMakeTheWhole) {
   EXPECT_EQ(first.covariance(), whole.covariance());
 }
 
+TEST(Preintegration, RaisedNoiseIsThatOfAnIntegrationWithIt) {
+  const ImuBatch samples = wavySamples(40);
+  const ImuNoise low{1e-4, 1e-5, 1e-3, 1e-4}, least{1e-3, 1e-6, 5e-4, 1e-5}, both{1e-3, 1e-5, 1e-3, 1e-4};
+  Preintegration raised({}, low), whole({}, both), kept({}, both);
+  for (Preintegration* p : {&raised, &whole, &kept}) p->append(samples);
+  raised.raiseNoise(least);
+  EXPECT_EQ(raised.covariance(), whole.covariance());
+  EXPECT_EQ(raised.deltaP(), whole.deltaP());
+  kept.raiseNoise(low);
+  EXPECT_EQ(kept.covariance(), whole.covariance()) << "nothing is lowered";
+}
+
 TEST(Preintegration, BiasJacobianIsTheDerivativeOfTheDeltas) {
   const ImuBatch samples = wavySamples(60);
   const ImuBias base{{0.02, -0.01, 0.03}, {0.1, 0.2, -0.1}};

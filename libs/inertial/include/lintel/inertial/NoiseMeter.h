@@ -32,21 +32,33 @@ class NoiseMeter {
   /// The smallest densities that were measured so far.
   const std::optional<SampledNoise>& quietest() const { return quietest_; }
 
+  /// The smallest densities while the noise was white: single samples and means of two and of four show the same. The
+  /// accelerometer's needs a white gyroscope as well: a flying vehicle's vibration may look white in it. Empty until
+  /// that has lasted for half a second.
+  const std::optional<double>& whiteGyro() const { return white_gyro_; }
+  const std::optional<double>& whiteAccel() const { return white_accel_; }
+
  private:
   void measure();
+  void measureWhite(double period_s);
 
   std::deque<ImuSample> samples_;  ///< as recorded: without those interpolated at the frames' times
   std::optional<SampledNoise> now_, quietest_;
+  std::int64_t gyro_white_since_ns_ = -1, accel_white_since_ns_ = -1;  ///< -1: they are not
+  std::optional<double> white_gyro_, white_accel_;
 };
 
 /// The densities to integrate with, for what a data sheet says and what the samples show:
 /// - white noise: as given, where it lies between what sensors can do and three times what was measured at the
-///   quietest (a filter in the sensor may hide as much);
+///   quietest (a filter in the sensor may hide as much); as measured where it is white and more than given;
 /// - vibration: periodic, so that most of it integrates to nothing; 0.15 stay (by the errors of
 ///   the flights of doc/benchmarks.md);
 /// - what calibration leaves in scale and alignment of a MEMS sensor's axes, 0.2 % of the motion, lasting a second.
 /// Walks are given bounds of what sensors do.
 ImuNoise effectiveNoise(const ImuNoise& given, const NoiseMeter& meter);
+
+/// The white part of it, which is always there.
+ImuNoise whiteNoise(const ImuNoise& given, const NoiseMeter& meter);
 
 /// How far a given density is from what was measured, in words; empty where it is plausible.
 std::string noiseRemark(const ImuNoise& given, const NoiseMeter& meter);

@@ -41,6 +41,9 @@ class Preintegration {
   /// Integrates all samples again with other biases as the point of linearisation.
   void repropagate(const ImuBias& bias);
 
+  /// Integrates all samples again with densities that are at least these.
+  void raiseNoise(const ImuNoise& least);
+
   double dt_s() const { return dt_s_; }
   const ImuBias& bias() const { return bias_; }
   const ImuNoise& noise() const { return noise_; }
