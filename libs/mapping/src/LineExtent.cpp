@@ -12,7 +12,6 @@ namespace lintel {
 
 namespace {
 
-constexpr int kHalvings = 12;     // of an interval: to a four thousandth of it
 constexpr double kBorder_px = 8;  // edges end 4 px before the border of the image; half of that counts as there
 
 /// What happens at a place of the line to the number of observations that cover it and that end before it.
@@ -31,20 +30,6 @@ std::vector<Change> changesAlong(const std::vector<SeenPiece>& pieces) {
     return x.place != y.place ? x.place < y.place : x.covered > y.covered;
   });
   return changes;
-}
-
-/// Where the position is known best: its standard deviation is the norm of an affine function of the place, and so
-/// has one minimum.
-double bestPlace(const LineEstimate& line, const std::pair<double, double>& stretch) {
-  auto [low, high] = stretch;
-  for (int k = 0; k < 2 * kHalvings; ++k) {
-    const double third = (high - low) / 3;
-    if (line.sigmaPosition(low + third) < line.sigmaPosition(high - third))
-      high -= third;
-    else
-      low += third;
-  }
-  return 0.5 * (low + high);
 }
 
 }  // namespace
@@ -84,24 +69,6 @@ std::optional<std::pair<double, double>> seenStretch(const KeyframeCameras& came
         whole ? std::make_pair(std::min(whole->first, piece->first), std::max(whole->second, piece->second)) : *piece;
   }
   return whole;
-}
-
-std::optional<std::pair<double, double>> knownPiece(const LineEstimate& line, const std::pair<double, double>& stretch,
-                                                    double most_m, double best_most_m) {
-  const auto known = [&](double along_m) { return line.sigmaPosition(along_m) <= most_m; };
-  if (known(stretch.first) && known(stretch.second)) return stretch;
-  const double best = bestPlace(line, stretch);
-  if (!(line.sigmaPosition(best) <= best_most_m)) return std::nullopt;
-  const auto reach = [&](double end) {
-    if (known(end)) return end;
-    double inside = best, outside = end;
-    for (int k = 0; k < kHalvings; ++k) {
-      const double middle = 0.5 * (inside + outside);
-      (known(middle) ? inside : outside) = middle;
-    }
-    return inside;
-  };
-  return std::make_pair(reach(stretch.first), reach(stretch.second));
 }
 
 Segment3 segmentOf(const KeyframeCameras& cameras, const LineRecord& line, const std::pair<double, double>& stretch) {

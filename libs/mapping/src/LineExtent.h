@@ -29,11 +29,6 @@ std::optional<std::pair<double, double>> coveredStretch(const std::vector<SeenPi
 std::optional<std::pair<double, double>> seenStretch(const KeyframeCameras& cameras, const LineRecord& line,
                                                      double share);
 
-/// The piece of a stretch where the standard deviation of the line's position is at most `most_m`, if it is at most
-/// `best_most_m` somewhere on the stretch; else empty.
-std::optional<std::pair<double, double>> knownPiece(const LineEstimate& line, const std::pair<double, double>& stretch,
-                                                    double most_m, double best_most_m);
-
 /// The drawn segment; start and end correspond to those of the first inlier view.
 Segment3 segmentOf(const KeyframeCameras& cameras, const LineRecord& line, const std::pair<double, double>& stretch);
 

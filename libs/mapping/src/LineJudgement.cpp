@@ -10,8 +10,6 @@ namespace lintel {
 
 namespace {
 
-constexpr double kWellKnown = 0.6;  // of the limit: a line that is nowhere known better is not cut, but degenerate
-
 bool hasEvidence(const MapParams& params, const LineRecord& line) {
   if (!line.known || keyframesOf(line) < params.min_observations || line.error_px > params.max_error_px) return false;
   return inliersOf(line) >= params.min_inlier_share * static_cast<double>(line.views.size());
@@ -23,17 +21,13 @@ LineJudgement judgeMapLine(const MapParams& params, const KeyframeCameras& camer
   LineJudgement result;
   if (!hasEvidence(params, line)) return result;
   result.stretch = seenStretch(cameras, line, params.coverage);
-  result.sigma_direction_rad = line.estimate.sigmaDirection();
-  const bool directed = result.sigma_direction_rad <= params.max_sigma_direction_rad;
-  const double most_m = std::min(params.max_sigma_m, params.max_relative_sigma * line.distance_m);
-  if (directed && result.stretch)
-    if (const auto piece = knownPiece(line.estimate, *result.stretch, most_m, kWellKnown * most_m)) {
-      result.cut = *piece != *result.stretch;
-      result.stretch = piece;
-    }
   const auto [from, to] = result.stretch.value_or(std::make_pair(0.0, 0.0));
+  result.sigma_direction_rad = line.estimate.sigmaDirection();
   result.sigma_distance_m = std::max(line.estimate.sigmaPosition(from), line.estimate.sigmaPosition(to));
-  result.state = directed && result.sigma_distance_m <= most_m ? LineState::kKnown : LineState::kDegenerate;
+  const bool known =
+      result.sigma_direction_rad <= params.max_sigma_direction_rad &&
+      result.sigma_distance_m <= std::min(params.max_sigma_m, params.max_relative_sigma * line.distance_m);
+  result.state = known ? LineState::kKnown : LineState::kDegenerate;
   return result;
 }
 

@@ -18,9 +18,7 @@ enum class LineState {
 
 struct LineJudgement {
   LineState state = LineState::kNoEvidence;
-  /// From where to where it was seen, as far as its position is known (LineExtent.h).
-  std::optional<std::pair<double, double>> stretch;
-  bool cut = false;                                      ///< it was seen farther than its position is known
+  std::optional<std::pair<double, double>> stretch;      ///< from where to where it was seen (LineExtent.h)
   double sigma_direction_rad = 0, sigma_distance_m = 0;  ///< the latter at the worse end of the stretch
 };
 

@@ -43,9 +43,7 @@ int tieDegenerateLines(const KeyframeCameras& cameras, const LineFitParams& fit,
   const PointsOnLines points(cameras, material.points);
   int tied = 0;
   for (LineRecord& line : material.lines) {
-    if (!line.parallel || line.tie) continue;
-    const LineJudgement judged = judgeMapLine(params, cameras, line);
-    if (judged.state == LineState::kKnown && !judged.cut) continue;
+    if (!line.parallel || line.tie || judgeMapLine(params, cameras, line).state == LineState::kKnown) continue;
     tied += tieToBest(cameras, fit, groups, points, line);
   }
   return tied;

@@ -3,8 +3,6 @@
 
 #include <gtest/gtest.h>
 
-#include <cmath>
-
 namespace lintel {
 namespace {
 
@@ -59,41 +57,6 @@ TEST(CoveredStretch, OpenAtTheOtherEnd) {
 }
 
 TEST(CoveredStretch, PiecesThatOnlyTouchShareNoLength) { EXPECT_FALSE(coveredStretch({{0, 1}, {1, 2}}, 0.2)); }
-
-/// 1 cm across at its middle, growing by 1 cm a metre (in quadrature) to both sides.
-LineEstimate estimateWith(double sigma_m, double sigma_rad) {
-  LineEstimate line;
-  line.covariance.diagonal() << sigma_m * sigma_m, sigma_m * sigma_m, sigma_rad * sigma_rad, sigma_rad * sigma_rad;
-  return line;
-}
-
-TEST(KnownPiece, AllOfALineThatIsKnownUpToItsEnds) {
-  EXPECT_EQ(knownPiece(estimateWith(0.01, 0.01), {-1, 2}, 0.03, 0.02), Stretch(-1, 2));
-}
-
-TEST(KnownPiece, EndsWhereThePositionIsNotKnownAnyMore) {
-  // sqrt(1 + s^2) cm = 2 cm at s = sqrt(3) m
-  const auto piece = knownPiece(estimateWith(0.01, 0.01), {-1, 5}, 0.02, 0.015);
-  ASSERT_TRUE(piece);
-  EXPECT_EQ(piece->first, -1);
-  EXPECT_NEAR(piece->second, std::sqrt(3.0), 0.002);
-}
-
-TEST(KnownPiece, TheBestPlaceNeedNotBeTheMiddle) {
-  // position and direction are correlated: smallest at s = 4 m
-  LineEstimate line = estimateWith(0.041231, 0.01);
-  line.covariance.topRightCorner<2, 2>() = line.covariance.bottomLeftCorner<2, 2>() =
-      -4e-4 * Eigen::Matrix2d::Identity();
-  const auto piece = knownPiece(line, {-2, 10}, 0.02, 0.015);
-  ASSERT_TRUE(piece);
-  EXPECT_NEAR(piece->first, 4 - std::sqrt(3.0), 0.005);
-  EXPECT_NEAR(piece->second, 4 + std::sqrt(3.0), 0.005);
-}
-
-TEST(KnownPiece, NothingOfALineThatIsNowhereKnownWellEnough) {
-  EXPECT_FALSE(knownPiece(estimateWith(0.016, 0.01), {-1, 5}, 0.02, 0.015));
-  EXPECT_FALSE(knownPiece(estimateWith(0.001, 0.01), {5, 9}, 0.02, 0.015)) << "known well where it was not seen";
-}
 
 }  // namespace
 }  // namespace lintel

@@ -75,7 +75,7 @@ struct MapParams {
   double max_sigma_m = 0.03;         ///< of a segment's ends, across it, and
   double max_relative_sigma = 0.02;  ///< the same relative to the distance it was seen from
   double point_max_relative_sigma = 0.20;
-  double coverage = 0.1;  ///< a piece of a line is drawn when this share of the views that would see it (and two) do
+  double coverage = 0.2;  ///< a piece of a line is drawn when this share of the views that would see it (and two) do
   MergeParams merge;
   GroupParams groups;
   SpacingParams spacing;
