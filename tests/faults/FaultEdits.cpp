@@ -250,6 +250,7 @@ void applyEdit(const fs::path& root, const std::string& edit) {
   if (words.empty() || words[0] == "none") return;
   const fs::path file = fileOf(root, words.at(1));
   if (words[0] == "obs") return applyRawlogEdit(file.string(), words);
+  if (words[0] == "map") return applyMapEdit(file.string(), words);
   if (words[0] == "remove") {
     if (fs::remove_all(file) == 0) throw std::runtime_error(file.string() + " is not there");
   } else if (words[0] == "folder") {

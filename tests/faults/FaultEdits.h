@@ -17,6 +17,9 @@ void applyEdit(const std::filesystem::path& root, const std::string& edit);
 /// The same of an edit that begins with `obs`: it changes the observations of a rawlog.
 void applyRawlogEdit(const std::string& rawlog, const std::vector<std::string>& words);
 
+/// The same of one that begins with `map`: takes records out of a map, or puts numbers into it, and writes it anew.
+void applyMapEdit(const std::string& map, const std::vector<std::string>& words);
+
 /// All edits of a fault, separated by `;`.
 void applyEdits(const std::filesystem::path& root, const std::string& edits);
 

@@ -161,6 +161,7 @@ void FaultInputs::makeOtherFiles() const {
     map.keyframes[i].id = i, map.keyframes[i].t_ns = static_cast<std::int64_t>(1 + i);
   writeMap(map, (whole / "map.lintel").string());
   writeMap(wholeMap(), (whole / "whole_map.lintel").string());
+  makeMapProgramInputs(whole);
   writeText((whole / "trajectory_covariance.csv").string(), covariancesOfFivePoses());
   std::string trajectory = "# t x y z qx qy qz qw\n";
   for (int i = 0; i < 20; ++i) trajectory += std::to_string(i) + ".5 1 2 " + std::to_string(i) + " 0 0 0 1\n";
@@ -203,13 +204,17 @@ Outcome FaultInputs::outcomeOf(const FaultRow& fault) const {
   };
   copy(fault.form);
   if (fault.form == "external.rawlog") copy("external_Images");
+  if (isMapProgram(fault.form))
+    for (const char* name : {"folder", "flight.lintel", "second.lintel"}) copy(name);
   const std::string extension = fs::path(fault.form).extension().string();
   const bool bag = extension == ".bag" || extension == ".db3" || extension == ".mcap";
   const bool recording = bag || fault.form == "folder" || extension == ".rawlog";
   applyEdits(fault.form == "folder" ? work / "folder/mav0" : work, fault.edits);
   Outcome outcome{"read", ""};
   try {
-    if (recording)
+    if (isMapProgram(fault.form))
+      outcome = runMapProgram(work, fault.form);
+    else if (recording)
       outcome = readRecording(work, fault.form, bag, fault.kind == "frames that were not recorded");
     else
       readFile(work, fault.form);

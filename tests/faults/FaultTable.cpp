@@ -32,7 +32,7 @@ std::string formName(const std::string& form) {
   if (form == "kalibr.yaml" || form == "vins.yaml") return "calibration";
   if (extension == ".lintel") return "map";
   if (extension == ".csv") return "covariances";
-  return form.substr(0, form.find('.'));
+  return form.substr(0, form.find_first_of(". "));
 }
 
 std::string happening(const std::string& outcome) {

@@ -27,6 +27,12 @@ std::string faultTableText(const std::vector<FaultRow>& rows);
 /// The table of kinds in doc/faults.md: kind, what happens, an example of the message.
 std::string kindTable(const std::vector<FaultRow>& rows);
 
+/// Forms of the table that are runs of lintel-map on the maps and the recording that makeMapProgramInputs() leaves:
+/// "densify", "merge", "export EXTENSION".
+bool isMapProgram(const std::string& form);
+void makeMapProgramInputs(const std::filesystem::path& folder);
+Outcome runMapProgram(const std::filesystem::path& work, const std::string& form);
+
 /// Inputs of every form, made once; copies of them are damaged and read.
 class FaultInputs {
  public:

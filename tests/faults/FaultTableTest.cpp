@@ -60,7 +60,9 @@ TEST(FaultTable, EveryFaultEndsAsTheTableSays) {
     EXPECT_NO_THROW(outcome = inputs.outcomeOf(row));
     EXPECT_THAT(outcome.text, AllOf(Not(HasSubstr("GARBAGE")), Not(HasSubstr("SILENT"))));
     EXPECT_THAT(outcome.message, Not(HasSubstr("MORE THAN ONE LINE")));
-    if (outcome.exitCode() != 0) EXPECT_NE(outcome.message, "");
+    if (outcome.exitCode() != 0) {
+      EXPECT_NE(outcome.message, "");
+    }
     if (write) {
       row.expected = outcome;
       continue;

@@ -89,7 +89,7 @@ void addKeyframes(Drawing& drawing) {
   DrawnPart part{"Keyframes", MapLayer::kKeyframes, -1, {}, {}};
   for (const MapKeyframe& keyframe : drawing.map->keyframes) {
     const auto strokes = frustumSegments(drawing.map->rig, keyframe.T_w_b, drawing.frustum_m, kKeyframeColour);
-    if (strokes.empty()) {
+    if (strokes.empty() || !drawable(keyframe.T_w_b)) {
       ++drawing.summary.dropped;
       continue;
     }
@@ -108,7 +108,7 @@ void addTrajectory(Drawing& drawing) {
   std::uint64_t at = 0;
   for (const auto& [t_ns, T_w_b] : drawing.map->trajectory) {
     if (begins.count(at++) > 0) previous = nullptr;
-    if (!drawable(T_w_b.p)) {
+    if (!drawable(T_w_b)) {
       ++drawing.summary.dropped;
       continue;
     }
@@ -173,6 +173,8 @@ double onPlane(const Camera& camera, double distance) {
 }
 
 }  // namespace
+
+bool drawable(const Pose& T) { return drawable(T.p) && std::abs(T.q.norm() - 1) < 1e-3; }
 
 std::vector<DrawnSegment> frustumSegments(const Rig& rig, const Pose& T_w_b, double depth_m, Rgb colour) {
   const Camera& camera = rig.camera;

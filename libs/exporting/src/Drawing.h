@@ -53,6 +53,9 @@ struct Drawing {
   double radiusOf(const DrawnSegment& s) const { return s.line ? radius_m : 0.3 * radius_m; }
 };
 
+/// Whether a pose is one: a rotation, and a place that viewers can count with.
+bool drawable(const Pose& T);
+
 /// Strokes of a camera's frustum of the given depth, in the world: kFrustumStrokes, the first from the eye; none if not
 /// finite.
 constexpr std::size_t kFrustumStrokes = 8;

@@ -120,7 +120,7 @@ Json pathData(const Drawing& drawing, std::int64_t origin_ns) {
   Floats positions, cameras, frustum;
   Json seconds = Json::array();
   for (const auto& [t_ns, T_w_b] : drawing.map->trajectory) {
-    if (drawing.summary.trajectory == 0 || !T_w_b.p.allFinite() || !T_w_b.q.coeffs().allFinite()) continue;
+    if (drawing.summary.trajectory == 0 || !drawable(T_w_b)) continue;
     const Pose T_w_c = T_w_b * drawing.map->rig.T_b_c;
     positions.add(T_w_b.p), cameras.add(T_w_c.p);
     for (const double v : {T_w_c.q.x(), T_w_c.q.y(), T_w_c.q.z(), T_w_c.q.w()}) cameras.add(v);

@@ -60,7 +60,7 @@ class JsonWriter {
     std::vector<const std::pair<std::int64_t, Pose>*> found;
     if (drawing_.summary.trajectory == 0) return found;
     for (const auto& stamped : drawing_.map->trajectory) {
-      if (stamped.second.p.allFinite()) found.push_back(&stamped);
+      if (drawable(stamped.second)) found.push_back(&stamped);
     }
     return found;
   }

@@ -5,6 +5,7 @@
 #include <cctype>
 #include <cmath>
 #include <filesystem>
+#include <map>
 #include <memory>
 
 #include "Writers.h"
@@ -30,7 +31,8 @@ struct Format {
   Layers layers;
   bool data;  // for programs rather than for the eye: nothing is left out
   const char* viewer;
-  bool folder = false;  // of files with fixed names
+  bool of_keyframes = false;  // of no use without them and their camera, whatever its layers
+  bool folder = false;        // of files with fixed names
 };
 
 const std::vector<Format>& formats() {
@@ -43,11 +45,11 @@ const std::vector<Format>& formats() {
       {"ply", plyFiles, LineStyle::kTubes, kOnlyLines, false, "meshlab FILE or CloudCompare"},
       {"3Dscene", sceneFiles, LineStyle::kLines, kAll, false, "SceneViewer3D FILE"},
       {"simplemap", simplemapFiles, LineStyle::kLines, kNoTrajectory, true,
-       "MRPT's and MOLA's tools for view-based maps, e.g. observations2map"},
+       "MRPT's and MOLA's tools for view-based maps, e.g. observations2map", true},
       {"colmap", colmapFiles, LineStyle::kLines, kPointsAndKeyframes, true,
-       "colmap gui --import_path FILE, and what reads COLMAP's models", true},
+       "colmap gui --import_path FILE, and what reads COLMAP's models", true, true},
       {"colmaptxt", colmapTextFiles, LineStyle::kLines, kPointsAndKeyframes, true,
-       "colmap gui --import_path FILE, and what reads COLMAP's models as text", true},
+       "colmap gui --import_path FILE, and what reads COLMAP's models as text", true, true},
       {"tum", tumFiles, LineStyle::kLines, kOnlyTrajectory, true, "evaluation tools, e.g. evo_traj tum FILE"},
       {"kitti", kittiFiles, LineStyle::kLines, kOnlyTrajectory, true, "evaluation tools, e.g. evo_traj kitti FILE"},
       {"euroc", eurocFiles, LineStyle::kLines, kOnlyTrajectory, true, "evaluation tools, e.g. evo_traj euroc FILE"},
@@ -87,6 +89,19 @@ void check(const ExportParams& params) {
   if (std::isnan(params.max_sigma_m)) throw ExportError("the greatest sigma of lines must be a length in metres");
 }
 
+/// The form of a file and what of it `params` leaves open. Throws ExportError.
+const Format& formatFor(const std::string& path, ExportParams& params) {
+  std::string extension = std::filesystem::path(path).extension().string();
+  if (!extension.empty()) extension.erase(0, 1);
+  const Format* format = findFormat(extension);
+  if (!format)
+    throw ExportError("cannot write " + path + ": no export has the extension '" + extension + "'; take one of " +
+                      listOfFormats());
+  if (!params.style) params.style = format->style;
+  if (!params.layers) params.layers = format->layers;
+  return *format;
+}
+
 void makeFolder(const std::string& path) {
   std::error_code error;
   std::filesystem::create_directory(path, error);
@@ -121,23 +136,40 @@ std::string viewerHint(const std::string& extension) {
   return format ? format->viewer : "";
 }
 
+std::string missingFor(const LineMap& map, const std::string& path, const ExportParams& params) {
+  ExportParams complete = params;
+  const Format& format = formatFor(path, complete);
+  if (format.of_keyframes && map.keyframes.empty()) return "keyframes";
+  if (format.of_keyframes) return map.rig.camera.fx > 0 && map.rig.camera.width > 0 ? "" : "calibrated camera";
+  const auto has = [&](MapLayer layer) {
+    return layer == MapLayer::kLines       ? !map.lines.empty()
+           : layer == MapLayer::kPoints    ? !map.points.empty()
+           : layer == MapLayer::kKeyframes ? !map.keyframes.empty()
+                                           : !map.trajectory.empty();
+  };
+  const std::map<MapLayer, const char*> names{{MapLayer::kLines, "lines"},
+                                              {MapLayer::kPoints, "points"},
+                                              {MapLayer::kKeyframes, "keyframes"},
+                                              {MapLayer::kTrajectory, "trajectory"}};
+  std::string missing;
+  for (const MapLayer layer : *complete.layers) {
+    if (has(layer)) return "";
+    const char* between = missing.empty() ? "" : layer == *complete.layers->rbegin() ? " and no " : ", no ";
+    missing += between + std::string(names.at(layer));
+  }
+  return missing;
+}
+
 ExportSummary exportMap(const LineMap& map, const std::string& path, const ExportParams& params) {
-  std::string extension = std::filesystem::path(path).extension().string();
-  if (!extension.empty()) extension.erase(0, 1);
-  const Format* format = findFormat(extension);
-  if (!format)
-    throw ExportError("cannot write " + path + ": no export has the extension '" + extension + "'; take one of " +
-                      listOfFormats());
   check(params);
   ExportParams complete = params;
-  if (!complete.style) complete.style = format->style;
-  if (!complete.layers) complete.layers = format->layers;
-  const Drawing drawing = makeDrawing(map, complete, format->data);
-  const OutputFiles files = format->write(drawing, path);
-  if (format->folder) makeFolder(path);
+  const Format& format = formatFor(path, complete);
+  const Drawing drawing = makeDrawing(map, complete, format.data);
+  const OutputFiles files = format.write(drawing, path);
+  if (format.folder) makeFolder(path);
   writeAll(files);
   ExportSummary summary = drawing.summary;
-  if (format->folder) summary.files.push_back(path);
+  if (format.folder) summary.files.push_back(path);
   for (const OutputFile& file : files) summary.files.push_back(file.path);
   return summary;
 }

@@ -14,7 +14,7 @@ OutputFiles rows(const Drawing& drawing, const std::string& path, const char* he
   Text text;
   text << head;
   for (const StampedPose& stamped : drawing.map->trajectory) {
-    if (!stamped.second.p.allFinite() || !stamped.second.q.coeffs().allFinite()) continue;
+    if (!drawable(stamped.second)) continue;
     row(stamped, text);
     text << '\n';
   }

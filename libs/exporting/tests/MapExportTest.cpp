@@ -288,6 +288,34 @@ TEST_F(MapExport, NotFiniteLinesAreDroppedAndCounted) {
   }
 }
 
+TEST_F(MapExport, WhatIsNoRotationIsDroppedAndCounted) {
+  LineMap map = kRoom;
+  map.keyframes[0].T_w_b.q.coeffs().setZero();
+  map.trajectory[3].second.q.coeffs() *= 3;
+  for (const char* extension : {"glb", "json", "simplemap", "colmap", "tum", "kitti"}) {
+    ExportParams params;
+    params.layers = {MapLayer::kKeyframes, MapLayer::kTrajectory};
+    EXPECT_EQ(exportMap(map, in(std::string("map.") + extension), params).dropped, 2u) << extension;
+  }
+}
+
+TEST_F(MapExport, WhatAMapLacksForAFormIsKnownBefore) {
+  EXPECT_EQ(missingFor(kRoom, "map.glb"), "");
+  LineMap map = kRoom;
+  map.lines.clear();
+  EXPECT_EQ(missingFor(map, "map.obj"), "lines");
+  EXPECT_EQ(missingFor(map, "map.glb"), "");
+  map.keyframes.clear();
+  EXPECT_EQ(missingFor(map, "map.simplemap"), "keyframes");
+  EXPECT_EQ(missingFor(map, "map.colmap"), "keyframes") << "its points would have no image";
+  map.trajectory.clear();
+  EXPECT_EQ(missingFor(map, "map.tum"), "trajectory");
+  EXPECT_EQ(missingFor({}, "map.glb"), "lines, no points, no keyframes and no trajectory");
+  ExportParams params;
+  params.layers = {MapLayer::kPoints};
+  EXPECT_EQ(missingFor(map, "map.obj", params), "") << "the points are asked for";
+}
+
 TEST_F(MapExport, PointsAtTheHorizonDoNotShrinkTheLinesInAViewer) {
   LineMap map = kRoom;
   map.points[7].p_w = {500, 0, 0};

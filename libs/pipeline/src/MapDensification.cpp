@@ -6,6 +6,7 @@
 #include <optional>
 #include <set>
 
+#include "MapDamage.h"
 #include "lintel/mapping/LineSpacing.h"
 #include "lintel/mapping/MapBuilder.h"
 #include "lintel/mapping/MapStructure.h"
@@ -15,6 +16,12 @@ namespace lintel {
 namespace {
 
 constexpr std::int64_t kMostBetween_ns = 250'000'000;  // poses farther apart say nothing of the time between
+
+std::string objection(const LineMap& map) {
+  if (map.keyframes.empty()) return "holds no keyframes, whose images would be searched: take a map of lintel-vio";
+  if (isDamaged(map)) return "has poses, IMU samples or times that are out of range: take a map of lintel-vio";
+  return {};
+}
 
 std::optional<Pose> poseAt(const PosesInTime& poses, std::int64_t t_ns) {
   const auto after = std::lower_bound(poses.begin(), poses.end(), t_ns,
@@ -99,6 +106,8 @@ class EdgeReader {
 
 MapDensification densifyMap(const LineMap& map, Recording& recording, const MapDensificationOptions& options) {
   MapDensification result;
+  result.refusal = objection(map);
+  if (!result.refusal.empty()) return result;
   const MapParams& params = options.configuration.map;
   MapMaterial material = materialOf(params, map);
   if (!options.poses.empty()) {

@@ -39,6 +39,9 @@ bool isTheSame(const LineMap& a, const LineMap& b) {
 
 std::string objection(const LineMap& first, const LineMap& second) {
   for (const LineMap* map : {&first, &second})
+    if (map->keyframes.empty())
+      return std::string("the ") + (map == &first ? "first" : "second") + " one holds no keyframes";
+  for (const LineMap* map : {&first, &second})
     if (map->views.empty() || map->pieces.empty())
       return std::string("the ") + (map == &first ? "first" : "second") +
              " one keeps no views of its places: make it again, with loops.enabled and loops.keep_interval_s above 0";

@@ -65,6 +65,7 @@ class LintelMap {
     checkOutputs();
     const ExportParams params = exportParams();
     const LineMap read = readMap(input_), map = undistorted_ ? undistorted(read) : read;
+    checkNotEmpty(read, params);
     const StopSignals stop;
     for (const std::string& output : outputs_) {
       checkNotStopped(stop, output);
@@ -102,6 +103,17 @@ class LintelMap {
     for (const std::string& output : outputs_)
       if (std::filesystem::is_regular_file(output) || std::filesystem::is_directory(output))
         throw std::runtime_error(output + ": exists already; choose another name or add -w");
+  }
+
+  /// Before anything is written: an empty file would be taken for a map.
+  void checkNotEmpty(const LineMap& map, const ExportParams& params) const {
+    if (!images_.empty() && map.keyframes.empty())
+      throw std::runtime_error(input_ + ": holds no keyframes, whose images would be written to " + images_ +
+                               ": take a map of lintel-vio");
+    for (const std::string& output : outputs_)
+      if (const std::string missing = missingFor(map, output, params); !missing.empty())
+        throw std::runtime_error(input_ + ": holds no " + missing + ", so " + output +
+                                 " would be of no use: choose another form or --layers");
   }
 
   void addOptions() {

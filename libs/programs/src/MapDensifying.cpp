@@ -38,6 +38,9 @@ class MapDensifying {
     const MapDensification result = search(map, *recording, options, stop);
     if (stop.asked()) throw Stopped("stopped by " + stop.name() + " before " + output_, stop.exitCode());
     checkImages(map, result);
+    if (result.map.lines.empty())
+      throw std::runtime_error(map_ + ": no line is known from its observations, and none was found in " +
+                               std::to_string(result.report.images) + " images of " + input_ + ": nothing is written");
     writeMap(result.map, output_);
     report(map, result);
     return 0;
@@ -88,6 +91,7 @@ class MapDensifying {
       MapDensification result = densifyMap(map, recording, options);
       reading.clear();
       if (searching) searching->clear();
+      if (!result.refusal.empty()) throw std::runtime_error(map_ + ": " + result.refusal);
       return result;
     } catch (const PosesError& error) {
       throw std::runtime_error(poses_ + ": " + error.what());
@@ -95,7 +99,7 @@ class MapDensifying {
   }
 
   void checkImages(const LineMap& map, const MapDensification& result) const {
-    if (result.report.images == 0 && !map.keyframes.empty())
+    if (result.report.images == 0)
       throw std::runtime_error(input_ + ": has no image at the time of a keyframe: give the recording of this map");
     if (result.keyframes_without_image > 0)
       err_ << "lintel-map: warning: " << input_ << " has no image for " << result.keyframes_without_image

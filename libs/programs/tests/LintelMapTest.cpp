@@ -108,6 +108,14 @@ TEST_F(LintelMapTest, ALimitOfFileSizeIsAnErrorAndLeavesNothing) {
   EXPECT_EQ(folder_.entries(), 1);
 }
 
+TEST_F(LintelMapTest, AnEmptyExportIsRefusedBeforeAnythingIsWritten) {
+  EXPECT_EQ(run({in("map.lintel"), "-o", in("map.csv"), "-o", in("map.tum")}), 1);
+  EXPECT_THAT(err_.str(), HasSubstr("map.lintel: holds no trajectory, so " + in("map.tum") + " would be of no use"));
+  EXPECT_EQ(run({in("map.lintel"), "-o", in("map.csv"), "--images", in("images"), "--recording", in("none")}), 1);
+  EXPECT_THAT(err_.str(), HasSubstr("holds no keyframes"));
+  EXPECT_EQ(folder_.entries(), 1);
+}
+
 TEST_F(LintelMapTest, HelpHasExamples) {
   EXPECT_EQ(run({"--help"}), 0);
   EXPECT_THAT(out_.str(), HasSubstr("lintel-map map.lintel -o map.glb"));

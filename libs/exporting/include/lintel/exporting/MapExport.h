@@ -49,6 +49,10 @@ std::vector<std::string> exportFormats();
 /// How a file of this extension is looked at, one line without a stop ("" for an unknown one).
 std::string viewerHint(const std::string& extension);
 
+/// What a map would need for an export to `path` that is of use, in words ("keyframes"); "" if it has it. Filters do
+/// not count.
+std::string missingFor(const LineMap& map, const std::string& path, const ExportParams& params = {});
+
 /// Writes `map` to `path` in the form that its extension names (case does not matter). Each file appears whole or not
 /// at all; the same map and parameters give the same bytes. World coordinates [m], z up; forms defined y-up
 /// (glb, gltf, dae, x3d) carry them below one node that turns them upright. Throws ExportError.

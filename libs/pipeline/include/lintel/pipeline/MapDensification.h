@@ -3,6 +3,7 @@
 
 #include <functional>
 #include <stdexcept>
+#include <string>
 #include <utility>
 #include <vector>
 
@@ -29,6 +30,7 @@ struct MapDensificationOptions {
 /// A map with what was found.
 struct MapDensification {
   LineMap map;
+  std::string refusal;  ///< why it cannot be searched, in words; empty: it was
   DensifyReport report;
   std::size_t keyframes_without_pose = 0;   ///< left out
   std::size_t keyframes_without_image = 0;  ///< not in the recording
