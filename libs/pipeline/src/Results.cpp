@@ -21,8 +21,9 @@ std::vector<std::string> writeResults(const OdometryResult& result, const std::s
   fs::create_directories(out, error);
   if (error) throw std::runtime_error(folder + ": cannot be made: " + error.message() + "; choose another folder");
   AtomicFile::writeWhole((out / "trajectory.tum").string(), trajectoryText(result.trajectory));
+  for (const char* earlier : {"trajectory_refined.tum", "stats.json"})  // must not be taken for this run's
+    fs::remove(out / earlier, error);
   AtomicFile::writeWhole((out / "trajectory_covariance.csv").string(), covarianceText(result.trajectory));
-  fs::remove(out / "trajectory_refined.tum", error);  // what an earlier run left must not be taken for this run's
   if (result.refinement.accepted)
     AtomicFile::writeWhole((out / "trajectory_refined.tum").string(), trajectoryText(result.refined_trajectory));
   AtomicFile::writeWhole((out / "config.yaml").string(), result.map.configuration);

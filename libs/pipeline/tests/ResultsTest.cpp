@@ -73,13 +73,15 @@ TEST(WriteResults, WritesEveryFileIntoAFolderThatItMakes) {
   for (const std::string& file : exported) EXPECT_FALSE(bytesOf(file).empty()) << file;
 }
 
-TEST(WriteResults, ARefinedTrajectoryOfAnEarlierRunDoesNotStay) {
+TEST(WriteResults, RefinedTrajectoryAndStatisticsOfAnEarlierRunDoNotStay) {
   const test::TempFolder work;
   OdometryResult result = refinedResult();
   writeResults(result, work / "out");
+  std::ofstream(work / "out/stats.json") << "{}";
   result.refinement.accepted = false;
   writeResults(result, work / "out");
   EXPECT_FALSE(fs::exists(work / "out/trajectory_refined.tum"));
+  EXPECT_FALSE(fs::exists(work / "out/stats.json")) << "a run killed from here on would be taken for whole";
   EXPECT_TRUE(fs::exists(work / "out/trajectory.tum"));
 }
 
