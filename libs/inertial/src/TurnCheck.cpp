@@ -90,6 +90,7 @@ TurnFit TurnCheck::fitAlong(const GyroPath& path, double offset_s) const {
       Eigen::Matrix4d H = 1e-12 * Eigen::Matrix4d::Identity();
       Eigen::Vector4d b = Eigen::Vector4d::Zero();
       std::vector<double> sizes;
+      sizes.reserve(samples.size());
       for (const Sample& s : samples) {
         const double e = (s.y[axis] - s.x.dot(parameters)) / s.sigma[axis];
         const double r = scale > 0 ? e / (kWidth * scale) : 0;

@@ -27,8 +27,8 @@ struct CameraLayout {
   std::vector<const double*> kept_blocks;
   std::vector<Eigen::Index> kept_offsets{0};  ///< one more entry for the end
 
-  Eigen::Index camera(int k) const { return kCameraTangent * k; }
-  Eigen::Index correction() const { return kCameraTangent * cameras; }
+  Eigen::Index camera(int k) const { return Eigen::Index{kCameraTangent} * k; }
+  Eigen::Index correction() const { return Eigen::Index{kCameraTangent} * cameras; }
   Eigen::Index target(int k) const {
     return correction() + kSightingCorrection + kept_offsets[static_cast<std::size_t>(k)];
   }
