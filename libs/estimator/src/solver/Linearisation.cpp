@@ -1,0 +1,140 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// How the factors come into ReducedSystem's normal equations: the larger half of its class to compile.
+#include <cmath>
+
+#include "solver/ReducedSystem.h"
+
+namespace lintel {
+
+namespace {
+
+/// Where the tangent space is the space itself, and its Jacobians are identities.
+bool isVectorSpace(const StateManifold& manifold) { return manifold.AmbientSize() == manifold.TangentSize(); }
+
+}  // namespace
+
+double ReducedSystem::linearise() {
+  const Eigen::Index n = states_.offsets.back();
+  states_.H.setZero(n, n);
+  states_.b.setZero(n);
+  double sum = 0;
+  for (const Factor* factor : landmarks_.others()) {
+    const auto* prior = dynamic_cast<const PriorFactor*>(factor->cost);
+    sum += prior && !factor->loss ? addPrior(*factor, *prior) : addOther(*factor);
+  }
+  views_ = views(true);
+  return sum + landmarks_.linearise(views_);
+}
+
+double ReducedSystem::addOther(const Factor& factor) {
+  // NOLINTNEXTLINE(clang-analyzer-core.CallAndMessage): a factor has a cost
+  const int rows = factor.cost->num_residuals();
+  std::vector<const double*> blocks;
+  std::vector<RowMajorMatrix> ambient;
+  std::vector<double*> pointers;
+  const Placement to = placementOf(factor);
+  for (std::size_t i = 0; i < factor.blocks.size(); ++i) {
+    blocks.push_back(window_.block(factor.blocks[i]));
+    ambient.emplace_back(rows, factor.cost->parameter_block_sizes()[i]);
+  }
+  pointers.reserve(ambient.size());
+  for (RowMajorMatrix& m : ambient) pointers.push_back(m.data());
+  Eigen::VectorXd r(rows);
+  factor.cost->Evaluate(blocks.data(), r.data(), pointers.data());
+  Eigen::MatrixXd J(rows, to.size());
+  for (std::size_t i = 0; i < blocks.size(); ++i) {
+    const StateManifold& manifold = *manifoldOf(factor.blocks[i].kind);
+    auto of_block = J.middleCols(to.from[i], manifold.TangentSize());
+    if (isVectorSpace(manifold)) {
+      of_block = ambient[i];
+      continue;
+    }
+    RowMajorMatrix plus(manifold.AmbientSize(), manifold.TangentSize());
+    manifold.PlusJacobian(blocks[i], plus.data());
+    of_block = ambient[i].lazyProduct(plus);
+  }
+  double weight;
+  const double cost = robustCost(factor.loss, r.squaredNorm(), weight);
+  if (factor.loss) {
+    J *= std::sqrt(weight);
+    r *= std::sqrt(weight);
+  }
+  addInformation(to, J.transpose() * J, J.transpose() * r);
+  return cost;
+}
+
+namespace {
+
+/// C' from both sides on the rows and columns `at` of H, and on these rows of `a` and `b`.
+template <int N>
+void turnBlock(const Eigen::Matrix<double, N, N>& C, Eigen::Index at, Eigen::MatrixXd& H, Eigen::MatrixXd& a,
+               Eigen::VectorXd& b) {
+  const Eigen::Index n = C.cols();
+  H.middleCols<N>(at, n) = H.middleCols<N>(at, n).lazyProduct(C).eval();
+  H.middleRows<N>(at, n) = C.transpose().lazyProduct(H.middleRows<N>(at, n)).eval();
+  a.middleRows<N>(at, n) = C.transpose().lazyProduct(a.middleRows<N>(at, n)).eval();
+  b.segment<N>(at, n) = C.transpose().lazyProduct(b.segment<N>(at, n)).eval();
+}
+
+}  // namespace
+
+/// A prior's information does not change, only the tangent spaces turn, and the alignment with its anchor moves:
+/// H = C' A'A C with C = blocks on the diagonal + G E in the anchor's columns.
+double ReducedSystem::addPrior(const Factor& factor, const PriorFactor& prior) {
+  std::vector<const double*> blocks;
+  for (const BlockKey& key : factor.blocks) blocks.push_back(window_.block(key));
+  const PriorDifference difference = prior.difference(blocks.data(), true);
+  const Eigen::VectorXd r = prior.constant() + prior.root() * difference.value;
+  Eigen::VectorXd gradient = prior.root().transpose() * r;
+  Eigen::MatrixXd H = prior.information();
+  const Placement to = placementOf(factor);
+  const Eigen::MatrixXd by_alignment = H * difference.by_alignment;  // n x 4, before the blocks turn
+  const Eigen::Matrix4d square = difference.by_alignment.transpose() * by_alignment;
+  const Eigen::Vector4d gradient_alignment = difference.by_alignment.transpose() * gradient;
+  Eigen::MatrixXd turned = by_alignment;
+  for (std::size_t i = 0; i < blocks.size(); ++i) {
+    const Eigen::MatrixXd& C = difference.by_block[i];
+    if (C.size() == 0) continue;
+    if (C.cols() == kPointTangent)
+      turnBlock<kPointTangent>(C, to.from[i], H, turned, gradient);
+    else if (C.cols() == kPoseTangent)
+      turnBlock<kPoseTangent>(C, to.from[i], H, turned, gradient);
+    else
+      turnBlock<Eigen::Dynamic>(C, to.from[i], H, turned, gradient);
+  }
+  if (prior.anchor() >= 0) {
+    const Eigen::Index at = to.from[static_cast<std::size_t>(prior.anchor())];
+    const Eigen::MatrixXd cross = turned * difference.alignment_by_anchor;  // n x 6
+    H.middleCols<kPoseTangent>(at) += cross;
+    H.middleRows<kPoseTangent>(at) += cross.transpose();
+    H.block<kPoseTangent, kPoseTangent>(at, at) +=
+        difference.alignment_by_anchor.transpose() * square * difference.alignment_by_anchor;
+    gradient.segment<kPoseTangent>(at) += difference.alignment_by_anchor.transpose() * gradient_alignment;
+  }
+  addInformation(to, H, gradient);
+  return 0.5 * r.squaredNorm();
+}
+
+ReducedSystem::Placement ReducedSystem::placementOf(const Factor& factor) const {
+  Placement placement;
+  for (const BlockKey& key : factor.blocks) {
+    placement.to.push_back(offsetOf(key));
+    placement.from.push_back(placement.from.back() + manifoldOf(key.kind)->TangentSize());
+  }
+  return placement;
+}
+
+void ReducedSystem::addInformation(const Placement& place, const Eigen::MatrixXd& H, const Eigen::VectorXd& b) {
+  for (std::size_t i = 0; i < place.to.size(); ++i) {
+    const Eigen::Index rows = place.from[i + 1] - place.from[i];
+    if (place.to[i] < 0) continue;
+    states_.b.segment(place.to[i], rows) += b.segment(place.from[i], rows);
+    for (std::size_t j = 0; j < place.to.size(); ++j)
+      if (const Eigen::Index columns = place.from[j + 1] - place.from[j];
+          place.to[j] >= 0 && place.to[j] <= place.to[i])
+        states_.H.block(place.to[i], place.to[j], rows, columns) +=
+            H.block(place.from[i], place.from[j], rows, columns);
+  }
+}
+
+}  // namespace lintel
