@@ -15,7 +15,6 @@
 #include "lintel/core/FrameRate.h"
 #include "lintel/estimator/StatePriors.h"
 #include "lintel/geometry/Rotation.h"
-#include "lintel/inertial/NoiseMeter.h"
 #include "lintel/inertial/Propagation.h"
 #include "solver/WindowSolver.h"
 #include "window/FailureDetection.h"
@@ -25,6 +24,7 @@
 #include "window/WindowCovariance.h"
 #include "window/WindowMarginalization.h"
 #include "window/WindowMove.h"
+#include "window/WindowNoise.h"
 #include "window/WindowRetirement.h"
 #include "window/WindowSigma.h"
 
@@ -43,11 +43,6 @@ constexpr int kFramesBeforeRetrial = 5;
 /// quarter of the solver's time and made the trajectory a few per cent better on average.
 constexpr double kSettledMove = 0.3;
 
-ImuNoise scaled(const ImuNoise& noise, const FactorParams& p) {
-  return {noise.gyro_noise * p.gyro_noise_scale, noise.gyro_walk * p.gyro_walk_scale,
-          noise.accel_noise * p.accel_noise_scale, noise.accel_walk * p.accel_walk_scale};
-}
-
 InertialState stateOf(const WindowFrame& frame) {
   return {frame.T_w_b(), velocityOf(frame.motion.data()), biasOf(frame.motion.data())};
 }
@@ -57,7 +52,11 @@ InertialState stateOf(const WindowFrame& frame) {
 class Estimator::Impl {
  public:
   Impl(const Rig& rig, const EstimatorParams& params)
-      : rig_(rig), params_(paramsFor(rig.camera, params)), initializer_(params_, rig.T_b_c), window_(rig) {}
+      : rig_(rig),
+        params_(paramsFor(rig.camera, params)),
+        noise_(rig.imu_noise, params_.factors),
+        initializer_(params_, rig.T_b_c),
+        window_(rig) {}
 
   WindowUpdate process(const FrameTracks& tracks, const ImuBatch& imu);
   WindowUpdate finish();
@@ -70,8 +69,6 @@ class Estimator::Impl {
 
  private:
   bool appendImu(const FrameTracks& tracks, const ImuBatch& imu);
-  ImuNoise noise(const ImuNoise& measured) const;
-  void raiseNoise();
   WindowUpdate skipFrame(const FrameTracks& tracks);
   void addFrame(const FrameTracks& tracks);
   void remember(const FrameTracks& tracks);
@@ -95,7 +92,7 @@ class Estimator::Impl {
 
   Rig rig_;
   EstimatorParams params_;
-  NoiseMeter noise_;
+  WindowNoise noise_;
   Initializer initializer_;
   SlidingWindow window_;
   std::optional<WindowCovariance> sigma_;                        // of the last solve
@@ -147,31 +144,12 @@ bool Estimator::Impl::appendImu(const FrameTracks& tracks, const ImuBatch& imu) 
   return !imu.empty() && imu.front().t_ns <= covered_from + kSlack_ns && imu.back().t_ns >= tracks.t_ns - kSlack_ns;
 }
 
-/// Densities with a scale of 1 are checked against what the samples show; others are meant as they are given.
-ImuNoise Estimator::Impl::noise(const ImuNoise& measured) const {
-  ImuNoise noise = rig_.imu_noise;
-  const FactorParams& p = params_.factors;
-  if (p.gyro_noise_scale == 1) noise.gyro_noise = measured.gyro_noise;
-  if (p.accel_noise_scale == 1) noise.accel_noise = measured.accel_noise;
-  if (p.gyro_walk_scale == 1) noise.gyro_walk = measured.gyro_walk;
-  if (p.accel_walk_scale == 1) noise.accel_walk = measured.accel_walk;
-  return scaled(noise, p);
-}
-
-/// That white noise is more than a data sheet says is known after some frames: those before get it as well.
-void Estimator::Impl::raiseNoise() {
-  const ImuNoise least = noise(whiteNoise(rig_.imu_noise, noise_));
-  for (WindowFrame& frame : window_.frames)
-    if (frame.imu) frame.imu->raiseNoise(least);
-}
-
 WindowUpdate Estimator::Impl::skipFrame(const FrameTracks& tracks) {
   WindowUpdate update;
   update.t_ns = tracks.t_ns;
   update.reason = "between window frames";
   if (!tracking_) return update;
-  Preintegration imu(biasOf(window_.frames.back().motion.data()), noise(effectiveNoise(rig_.imu_noise, noise_)),
-                     rig_.gravity_m_s2);
+  Preintegration imu(biasOf(window_.frames.back().motion.data()), noise_.now(), rig_.gravity_m_s2);
   imu.append(pending_imu_);
   const InertialState state = propagated(stateOf(window_.frames.back()), imu);
   update.T_w_b = state.T_w_b;
@@ -195,8 +173,7 @@ void Estimator::Impl::addFrame(const FrameTracks& tracks) {
   frame.t_ns = tracks.t_ns;
   if (!window_.frames.empty()) {
     const WindowFrame& before = window_.frames.back();
-    frame.imu = std::make_shared<Preintegration>(biasOf(before.motion.data()),
-                                                 noise(effectiveNoise(rig_.imu_noise, noise_)), rig_.gravity_m_s2);
+    frame.imu = std::make_shared<Preintegration>(biasOf(before.motion.data()), noise_.now(), rig_.gravity_m_s2);
     frame.imu->append(pending_imu_);
     const InertialState state = propagated(stateOf(before), *frame.imu);
     frame.pose = toBlock(state.T_w_b);
@@ -207,7 +184,7 @@ void Estimator::Impl::addFrame(const FrameTracks& tracks) {
   newest_t_ns_ = tracks.t_ns;
   if (!pending_imu_.empty()) frame.gyro = pending_imu_.back().gyro;
   window_.addFrame(std::move(frame), tracks);
-  raiseNoise();
+  noise_.raise(window_);
   unroll(window_);
 }
 

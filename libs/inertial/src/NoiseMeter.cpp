@@ -4,18 +4,17 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
-#include <limits>
-#include <vector>
+
+#include "WhiteNoise.h"
 
 namespace lintel {
 
 namespace {
 
 constexpr double kSpan_s = 2, kLeast_s = 0.25;
-constexpr double kHidden = 3;    // how much more white noise there may be than the samples show
-constexpr double kAlike = 1.25;  // white noise of two seconds: densities of means differ by a tenth by chance
+constexpr double kHidden = 3;  // how much more white noise there may be than the samples show
 constexpr double kWhiteFor_s = 0.5;
-constexpr double kUnderstated = 1.5;  // a data sheet is taken by its word before
+constexpr double kUnderstated = 1.5;  // a data sheet that is wrong by less is kept
 constexpr double kVibrationShare = 0.15;
 constexpr double kScaleError = 0.002;
 constexpr double kScaleErrorLasts_s = 1;
@@ -34,37 +33,8 @@ double seconds(const ImuSample& from, const ImuSample& to) { return 1e-9 * stati
 double white(double given, const Range& range, double quietest, const std::optional<double>& shown) {
   const double most = std::max(range.low, std::min(range.high, kHidden * quietest));
   const double value = Range{range.low, most}.clamp(given);
-  const bool understated = shown && *shown > kUnderstated * value && *shown < kAlike * quietest;
+  const bool understated = shown && *shown > kUnderstated * value && *shown < kWhiteSpread * quietest;
   return understated ? range.clamp(*shown) : value;
-}
-
-/// White density that the means of `n` samples show by their deviations from the line through their neighbours.
-double densityOfMeans(const std::deque<ImuSample>& samples, Eigen::Vector3d ImuSample::*values, std::size_t n,
-                      double period_s) {
-  std::vector<Eigen::Vector3d> means;
-  for (std::size_t i = 0; i + n <= samples.size(); i += n) {
-    Eigen::Vector3d sum = Eigen::Vector3d::Zero();
-    for (std::size_t k = i; k < i + n; ++k) sum += samples[k].*values;
-    means.push_back(sum / static_cast<double>(n));
-  }
-  if (means.size() < 3) return std::numeric_limits<double>::infinity();
-  double squares = 0;
-  for (std::size_t i = 2; i < means.size(); ++i)
-    squares += (means[i - 1] - 0.5 * (means[i - 2] + means[i])).squaredNorm();
-  constexpr double kSquares = 3 * 1.5;  // three axes; variances 1 + 1/4 + 1/4
-  return std::sqrt(squares / (kSquares * static_cast<double>(means.size() - 2)) * static_cast<double>(n) * period_s);
-}
-
-/// The density of white noise; empty where the noise is not white.
-std::optional<double> whiteDensity(const std::deque<ImuSample>& samples, Eigen::Vector3d ImuSample::*values,
-                                   double period_s) {
-  double low = std::numeric_limits<double>::infinity(), high = 0, sum = 0;
-  for (const std::size_t n : {1, 2, 4}) {
-    const double density = densityOfMeans(samples, values, n, period_s);
-    low = std::min(low, density), high = std::max(high, density), sum += density;
-  }
-  if (!(high < kAlike * low)) return std::nullopt;
-  return sum / 3;
 }
 
 /// Takes a density down once noise has been white for long enough.
@@ -141,9 +111,10 @@ void NoiseMeter::measure() {
 
 void NoiseMeter::measureWhite(double period_s) {
   const std::int64_t now_ns = samples_.back().t_ns;
-  const std::optional<double> gyro = whiteDensity(samples_, &ImuSample::gyro, period_s);
+  const std::optional<double> gyro = whiteDensity(samples_, &ImuSample::gyro, now_->gyro_density, period_s);
   keepSmallest(gyro, now_ns, gyro_white_since_ns_, white_gyro_);
-  const std::optional<double> accel = gyro ? whiteDensity(samples_, &ImuSample::accel, period_s) : std::nullopt;
+  const std::optional<double> accel =
+      gyro ? whiteDensity(samples_, &ImuSample::accel, now_->accel_density, period_s) : std::nullopt;
   keepSmallest(accel, now_ns, accel_white_since_ns_, white_accel_);
 }
 

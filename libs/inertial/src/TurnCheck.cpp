@@ -27,8 +27,7 @@ constexpr double kSilent_rad_s = 1e-3;     // less than any gyroscope's noise: v
 constexpr double kNoiseMisses = 0.17, kLargestMissed = 0.5;
 constexpr double kUnrelatedMisses = 0.8;  // of turns that have nothing in common it is 1
 constexpr double kClearlyLess = 0.5;
-constexpr double kShown =
-    10;  // standard deviations of an entry of M: hundreds of offsets are tried, noise reaches five
+constexpr double kShown = 10;  // standard deviations of an entry of M: noise alone reaches 3, the right offset 100
 constexpr double kSearchedBefore_s = 0.1;  // by ClockOffset, before the start
 constexpr double kLongestSearch_s = 10, kShareOfSpan = 0.5, kSearchStep_s = 0.04;
 constexpr int kRounds = 4;

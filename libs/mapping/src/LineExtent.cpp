@@ -12,7 +12,7 @@ namespace lintel {
 
 namespace {
 
-constexpr double kBorder_px = 8;  // edges end 4 px before the border of the image; half of that counts as there
+constexpr double kBorder_px = 8;  // edges are cut 4 px before the border, and their ends then fitted
 
 /// What happens at a place of the line to the number of observations that cover it and that end before it.
 struct Change {

@@ -72,7 +72,7 @@ class LineMerger {
   }
 
  private:
-  static constexpr double kCoverage = 0.2;  // share of the views that must see a stretch
+  static constexpr double kCoverage = 0.2;  // share of the views that must see a stretch, as in the map
 
   Segment3 drawn(const LineRecord& line) const {
     if (!line.known) return {};

@@ -56,20 +56,21 @@ class CausalWay {
   Eigen::Vector3d from_, missing_;
 };
 
-/// Variance [m^2] of a position that the IMU gives at the share `s` of an interval of `T` seconds whose ends are known:
-/// white noise of the specific force integrated twice, that of the angular rate, by gravity, three times. Velocities
-/// are taken as unknown: keyframes far apart say little of them.
+/// Variance [m^2] of a position that the IMU gives at the share `s` of an interval of `T` seconds at whose ends
+/// position and attitude are known, and the velocity is not: keyframes far apart say little of it. White noise of the
+/// specific force is integrated twice, and the error of the attitude, a Brownian bridge, tilts gravity: with u = s (1 -
+/// s)
+///   q_a^2 T^3 u^2 / 3 + (g q_g)^2 T^5 u^2 (1 + 2 u) / 45.
 double bridgeVariance(const Preintegration& imu, double T, double s) {
-  const double share = 4 * s * (1 - s), accel = imu.noise().accel_noise,
-               tilt = imu.gravity_m_s2() * imu.noise().gyro_noise;
-  return accel * accel * T * T * T / 48 * share * share + tilt * tilt * std::pow(T, 5) / 1280 * share * share;
+  const double u = s * (1 - s), q_a = imu.noise().accel_noise, g_q_g = imu.gravity_m_s2() * imu.noise().gyro_noise;
+  return u * u * (q_a * q_a * std::pow(T, 3) / 3 + g_q_g * g_q_g * std::pow(T, 5) * (1 + 2 * u) / 45);
 }
 
 /// Poses of the frames `first` to `last` of the causal trajectory, between two keyframes: the IMU's, as long as it is
 /// more precise than the images' of the causal trajectory.
 void fillInterval(const RetiredKeyframe& from, const RetiredKeyframe& to, const CausalWay& way, const TimedPose* first,
                   const TimedPose* last, std::vector<TimedPose>& trajectory) {
-  constexpr double kCausalSigma_m = 0.005;
+  constexpr double kCausalSigma_m = 0.005;  // over four seconds with known ends: 1 to 5 mm on 17 of 18 recordings
   std::vector<std::int64_t> times;
   for (const TimedPose* frame = first; frame != last; ++frame) times.push_back(frame->first);
   times.push_back(to.t_ns);

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 #include "lintel/geometry/Frames.h"
 #include "lintel/geometry/Rotation.h"
 #include "lintel/mapping/BatchRefinement.h"
@@ -15,8 +17,12 @@ class RefinedTrajectoryTest : public testing::Test {
  protected:
   static constexpr double kAcceleration = 2;
 
-  RefinedTrajectoryTest() {
-    auto imu = std::make_shared<Preintegration>(ImuBias{}, ImuNoise{2e-4, 1e-5, 2e-3, 1e-4});
+  RefinedTrajectoryTest() { giveImu({0, 0, 0, 0}); }
+
+  /// The second keyframe's IMU: the same samples, with other densities.
+  void giveImu(const ImuNoise& noise) {
+    causal_ = {};
+    auto imu = std::make_shared<Preintegration>(ImuBias{}, noise);
     ImuBatch samples;
     for (int i = 0; i <= 200; ++i) samples.push_back({kSecond / 200 * i, {0, 0, 0}, {kAcceleration, 0, kGravity}});
     imu->append(samples);
@@ -42,9 +48,17 @@ TEST_F(RefinedTrajectoryTest, TheImuCarriesStatesBetweenKeyframes) {
     const double t = 0.1 * i;
     EXPECT_EQ(refined[static_cast<std::size_t>(i)].first, kSecond / 10 * i);
     EXPECT_LT((refined[static_cast<std::size_t>(i)].second.p - Eigen::Vector3d(kAcceleration / 2 * t * t, 0, 0)).norm(),
-              2e-4)
-        << "of the causal jitter of 3 cm next to nothing is left";
+              1e-9)
+        << "the causal jitter is gone";
   }
+}
+
+TEST_F(RefinedTrajectoryTest, AnImuAsImpreciseAsTheImagesHasHalfOfTheSay) {
+  // half way through a second: q^2 T^3 / 48 and (g q)^2 T^5 / 480 are the 5 mm of the causal trajectory
+  giveImu({0, 0, 0.005 * std::sqrt(48), 0});
+  EXPECT_NEAR(refinedTrajectory(causal_, causal_.keyframes)[5].second.p.y(), 0.5 * 0.03, 1e-9);
+  giveImu({0.005 * std::sqrt(480) / kGravity, 0, 0, 0});
+  EXPECT_NEAR(refinedTrajectory(causal_, causal_.keyframes)[5].second.p.y(), 0.5 * 0.03, 1e-9);
 }
 
 TEST_F(RefinedTrajectoryTest, WhatIsMissingIsSpreadOverTheInterval) {
@@ -52,8 +66,8 @@ TEST_F(RefinedTrajectoryTest, WhatIsMissingIsSpreadOverTheInterval) {
   moved[1].T_w_b.p += Eigen::Vector3d(0, 0.1, 0);
   const auto refined = refinedTrajectory(causal_, moved);
   EXPECT_LT(refined[0].second.p.norm(), 1e-9);
-  EXPECT_NEAR(refined[5].second.p.y(), 0.05, 2e-4);  // half way by symmetry
-  EXPECT_NEAR(refined[1].second.p.y(), 0.1 * (3 * 0.01 - 2 * 0.001), 2e-4) << "no kink at the keyframe";
+  EXPECT_NEAR(refined[5].second.p.y(), 0.05, 1e-9);  // half way by symmetry
+  EXPECT_NEAR(refined[1].second.p.y(), 0.1 * (3 * 0.01 - 2 * 0.001), 1e-9) << "no kink at the keyframe";
   EXPECT_NEAR(refined[10].second.p.y(), 0.1, 1e-9);
 }
 
