@@ -20,6 +20,7 @@
 #include "window/FailureDetection.h"
 #include "window/KeyframeSelection.h"
 #include "window/OutlierRejection.h"
+#include "window/RestDetection.h"
 #include "window/RollingShutter.h"
 #include "window/WindowCovariance.h"
 #include "window/WindowMarginalization.h"
@@ -55,6 +56,7 @@ class Estimator::Impl {
       : rig_(rig),
         params_(paramsFor(rig.camera, params)),
         noise_(rig.imu_noise, params_.factors),
+        rest_(params_),
         initializer_(params_, rig.T_b_c),
         window_(rig) {}
 
@@ -93,6 +95,7 @@ class Estimator::Impl {
   Rig rig_;
   EstimatorParams params_;
   WindowNoise noise_;
+  RestDetection rest_;
   Initializer initializer_;
   SlidingWindow window_;
   std::optional<WindowCovariance> sigma_;                        // of the last solve
@@ -185,6 +188,7 @@ void Estimator::Impl::addFrame(const FrameTracks& tracks) {
   if (!pending_imu_.empty()) frame.gyro = pending_imu_.back().gyro;
   window_.addFrame(std::move(frame), tracks);
   noise_.raise(window_);
+  rest_.add(window_);
   unroll(window_);
 }
 
@@ -254,7 +258,8 @@ void Estimator::Impl::moveToAnchor() {
 void Estimator::Impl::track(WindowUpdate& update) {
   WindowFrame& newest = window_.frames.back();
   const Pose predicted = newest.T_w_b();
-  newest.at_rest = isAtRest(window_, params_);
+  newest.at_rest = rest_.atRest(window_);
+  newest.still = rest_.imagesRest();
   const bool keyframe = secondNewestIsKeyframe(window_, params_);
   solve(update);
   newest.blind = pointsInNewest(window_) + linesInNewest(window_) < params_.failure.min_points && !newest.at_rest;

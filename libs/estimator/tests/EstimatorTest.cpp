@@ -329,6 +329,24 @@ TEST(Estimator, StartsAtRestAndTakesOff) {
   EXPECT_LT(positionError(updates, flight), 0.05);
 }
 
+TEST(Estimator, RestsWhileItsMotorsRunBeforeTakeOff) {
+  const DelayedStart resting(std::make_shared<FigureTrajectory>(), 6);
+  TrackedFlight flight = fly(ImuSimulatorParams{}, tracksFor(9, 0.2), resting);
+  constexpr std::size_t kMotorsOn = 40, kTakeOff = 115;  // 2 s, a little before 6 s
+  for (std::size_t k = kMotorsOn; k < kTakeOff; ++k)
+    for (std::size_t i = 0; i < flight.sim.frames[k].imu.size(); ++i) {
+      ImuSample& sample = flight.sim.frames[k].imu[i];
+      sample.accel += Eigen::Vector3d(0.05, -0.03, 0.02) + (i % 2 == 0 ? 1 : -1) * Eigen::Vector3d(0.8, 0.7, 1);
+      sample.gyro += (i % 2 == 0 ? 0.06 : -0.06) * Eigen::Vector3d(1, -1, 0.5);
+    }
+  const auto updates = run(flight);
+  EXPECT_EQ(lostOf(updates), 0);
+  ASSERT_TRUE(updates[kMotorsOn].hasPose());
+  EXPECT_TRUE(updates[kTakeOff - 1].at_rest || updates[kTakeOff - 2].at_rest);
+  for (std::size_t k = kMotorsOn; k < kTakeOff; ++k)
+    ASSERT_LT((updates[k].T_w_b.p - updates[kMotorsOn].T_w_b.p).norm(), 0.02) << "drift, frame " << k;
+}
+
 TEST(Estimator, PureRotationGivesNoPoseRatherThanAWrongOne) {
   FigureParams turning;
   turning.translation = 0;
@@ -424,8 +442,10 @@ TEST(Estimator, AWrongStartIsWithdrawnAndReplacedWithoutAGap) {
   EXPECT_LE(trajectory.front().first, flight.sim.frames[wrong].tracks.t_ns) << "where the accelerometer becomes right";
   std::vector<Eigen::Vector3d> estimate, truth;
   for (std::size_t i = 0, k = 0; i < trajectory.size(); ++i) {
-    if (i > 0) EXPECT_LE(trajectory[i].first - trajectory[i - 1].first, 100'000'000) << "a gap";
-    if (i > 0) EXPECT_GT(trajectory[i].first, trajectory[i - 1].first);
+    if (i > 0) {
+      EXPECT_LE(trajectory[i].first - trajectory[i - 1].first, 100'000'000) << "a gap";
+      EXPECT_GT(trajectory[i].first, trajectory[i - 1].first);
+    }
     while (flight.sim.frames[k].tracks.t_ns != trajectory[i].first) ++k;
     estimate.push_back(trajectory[i].second.p);
     truth.push_back(flight.truth(k).state.T_w_b.p);

@@ -109,7 +109,14 @@ std::string Initializer::initialise(SlidingWindow& window) const {
   if (n < params_.initializer.min_frames) return "collecting frames";
   for (std::size_t k = 1; k < window.frames.size(); ++k)
     if (!window.frames[k].imu || window.frames[k].imu->dt_s() <= 0) return "waiting for IMU samples between all frames";
-  return atRest(window) ? startStatic(window) : startMoving(window);
+  // the newest frames decide: it may have been put down just now
+  SlidingWindow newest = window;
+  while (static_cast<int>(newest.frames.size()) > params_.initializer.min_frames)
+    newest.removeFrame(newest.frames.front().id, false);
+  newest.frames.front().imu.reset();
+  if (!atRest(newest)) return startMoving(window);
+  window = std::move(newest);
+  return startStatic(window);
 }
 
 std::string Initializer::startStatic(SlidingWindow& window) const {

@@ -71,6 +71,15 @@ std::unique_ptr<PriorFactor> makeRestPrior(double velocity_sigma) {
   return makeMotionPrior(sigma);
 }
 
+std::unique_ptr<PriorFactor> makeStillPrior(const PoseBlock& earlier, double position_sigma) {
+  // the earlier pose is the prior's anchor: what is left of the later one is its position relative to that
+  const auto manifold = std::make_shared<PoseManifold>();
+  std::vector<PriorBlock> blocks{{manifold, earlier, GaugeAction::kPose}, {manifold, earlier, GaugeAction::kPose}};
+  Eigen::MatrixXd A = Eigen::MatrixXd::Zero(3, 2 * kPoseTangent);
+  A.block<3, 3>(0, kPoseTangent) = Eigen::Matrix3d::Identity() / position_sigma;
+  return std::make_unique<PriorFactor>(std::move(blocks), std::move(A), Eigen::VectorXd::Zero(3));
+}
+
 std::unique_ptr<PriorFactor> makeBiasPrior(const InitializerParams& params) {
   MotionBlock sigma = MotionBlock::Constant(kFree);
   sigma.segment<3>(kBiasGyroAt).setConstant(params.bias_gyro_sigma);

@@ -25,7 +25,7 @@ void WindowFactors::addAll(const EstimatorParams& params, const Pose& T_b_c_cali
 
 void WindowFactors::addMeasurements(const EstimatorParams& params) {
   addImu();
-  addRest(params.rest_velocity_sigma);
+  addRest(params);
   addPoints();
   addLines(params.degeneracy);
 }
@@ -66,9 +66,15 @@ void WindowFactors::addImu() {
   }
 }
 
-void WindowFactors::addRest(double velocity_sigma) {
-  for (const WindowFrame& frame : window_.frames)
-    if (frame.at_rest) add(makeRestPrior(velocity_sigma), {{BlockKey::kMotion, frame.id}});
+void WindowFactors::addRest(const EstimatorParams& params) {
+  for (std::size_t i = 0; i < window_.frames.size(); ++i) {
+    const WindowFrame& frame = window_.frames[i];
+    if (frame.at_rest) add(makeRestPrior(params.rest_velocity_sigma), {{BlockKey::kMotion, frame.id}});
+    if (!frame.still || i == 0) continue;
+    const WindowFrame& before = window_.frames[i - 1];
+    add(makeStillPrior(before.pose, params.rest_position_sigma),
+        {{BlockKey::kPose, before.id}, {BlockKey::kPose, frame.id}});
+  }
 }
 
 void WindowFactors::addPoints() {

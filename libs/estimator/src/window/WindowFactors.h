@@ -36,7 +36,7 @@ class WindowFactors {
   /// it a solve may turn the whole window, and the causal trajectory would jump. Never marginalised.
   void addGauge();
   void addImu();
-  void addRest(double velocity_sigma);
+  void addRest(const EstimatorParams& params);
   void addPoints();
   void addLines(const DegeneracyParams& degeneracy);
 

@@ -122,6 +122,7 @@ void marginaliseSecondNewest(SlidingWindow& window) {
   auto joined = std::make_shared<Preintegration>(*leaving.imu);
   joined->append(*newest.imu);
   newest.imu = std::move(joined);
+  newest.still = newest.still && leaving.still;
 }
 
 }  // namespace lintel

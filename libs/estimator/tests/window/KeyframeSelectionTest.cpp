@@ -42,48 +42,27 @@ TEST(KeyframeSelection, MuchTimeMakesAKeyframe) {
   EXPECT_TRUE(secondNewestIsKeyframe(window, params));
 }
 
+TEST(KeyframeSelection, ARestBeginsWithAKeyframe) {
+  SlidingWindow window = threeFrames(0, 40);
+  window.frames[2].still = true;
+  EXPECT_TRUE(secondNewestIsKeyframe(window, {}));
+  window.frames[1].still = true;
+  EXPECT_FALSE(secondNewestIsKeyframe(window, {})) << "it has not moved since";
+}
+
+TEST(KeyframeSelection, ARestEndsWithAKeyframe) {
+  SlidingWindow window = threeFrames(0, 40);
+  window.frames[1].at_rest = true;
+  EXPECT_FALSE(secondNewestIsKeyframe(window, {})) << "a short one";
+  window.frames[1].t_ns = window.frames[0].t_ns + 1'000'000'000;
+  EXPECT_TRUE(secondNewestIsKeyframe(window, {}));
+  window.frames[2].at_rest = true;
+  EXPECT_FALSE(secondNewestIsKeyframe(window, {})) << "it rests on";
+}
+
 TEST(KeyframeSelection, TheFirstFramesAreKeyframes) {
   SlidingWindow window = windowAt({at(0, 0, 0), at(0, 0, 0)});
   EXPECT_TRUE(secondNewestIsKeyframe(window, {}));
-}
-
-/// A resting window whose last interval has an IMU that trembles by `gyro` and `accel`.
-SlidingWindow resting(double gyro, double accel) {
-  SlidingWindow window = threeFrames(0, 40);
-  ImuBatch batch;
-  for (int i = 0; i <= 10; ++i) {
-    const double sign = i % 2 == 0 ? 1 : -1;
-    batch.push_back({i * 5'000'000, {0.01 + sign * gyro, 0, 0}, {0, sign * accel, 9.81}});
-  }
-  window.frames[2].imu = std::make_shared<Preintegration>(ImuBias{}, ImuNoise{});
-  window.frames[2].imu->append(batch);
-  return window;
-}
-
-TEST(Rest, ImagesAndImuMustAgree) {
-  const EstimatorParams params;
-  EXPECT_TRUE(isAtRest(resting(0.005, 0.1), params));
-  EXPECT_FALSE(isAtRest(resting(2 * params.initializer.static_gyro_std, 0.1), params));
-  EXPECT_FALSE(isAtRest(resting(0.005, 2 * params.initializer.static_accel_std), params));
-  EXPECT_FALSE(isAtRest(threeFrames(0, 40), params)) << "no IMU";
-  SlidingWindow moving = resting(0.005, 0.1);
-  for (auto& [id, track] : moving.points) track.sightings.back().observation.ray.x() += 1.0 / 500;
-  EXPECT_FALSE(isAtRest(moving, params));
-}
-
-TEST(Rest, IsNotASlowUniformMotionFarFromAllPoints) {
-  // 10 cm/s, 20 m away: 0.2 px in a tenth of a second, and the IMU shows nothing
-  SlidingWindow slow = resting(0.005, 0.1);
-  for (auto& [id, track] : slow.points) track.sightings.back().observation.ray.x() += 0.2 / 458;
-  EXPECT_TRUE(isAtRest(slow, {}));
-  slow.frames.back().motion[kVelocityAt] = 0.1;
-  EXPECT_FALSE(isAtRest(slow, {}));
-}
-
-TEST(Rest, CanBeSwitchedOff) {
-  EstimatorParams params;
-  params.detect_rest = false;
-  EXPECT_FALSE(isAtRest(resting(0.005, 0.1), params));
 }
 
 TEST(FeaturesInNewest, CountOnlyWhatTheNewestFrameSaw) {

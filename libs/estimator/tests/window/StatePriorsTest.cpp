@@ -75,5 +75,21 @@ TEST(ParamsFor, ADistortionOfZeroIsNotKnown) {
   EXPECT_EQ(paramsFor(camera, params).calibration.distortion_sigma, 0.3);
 }
 
+TEST(StillPrior, HoldsTheLaterPositionAtTheEarlierOneWhereverThatIs) {
+  const PoseBlock earlier = toBlock({expRotation({0.1, -0.2, 0.7}), {1, 2, 3}});
+  const auto prior = makeStillPrior(earlier, 0.005);
+  // both have moved and turned since: only their distance counts
+  const Pose moved{expRotation({0.3, 0.1, -1.2}), {-4, 5, 6}};
+  const PoseBlock first = toBlock(moved),
+                  second = toBlock({moved.q * expRotation({0.2, 0, 0}), moved.p + Eigen::Vector3d(0.003, 0, 0.004)});
+  const double* same[] = {first.data(), first.data()};
+  const double* apart[] = {first.data(), second.data()};
+  Eigen::Vector3d r;
+  ASSERT_TRUE(prior->Evaluate(same, r.data(), nullptr));
+  EXPECT_LT(r.norm(), 1e-9);
+  ASSERT_TRUE(prior->Evaluate(apart, r.data(), nullptr));
+  EXPECT_NEAR(r.norm(), 1, 1e-9);
+}
+
 }  // namespace
 }  // namespace lintel

@@ -192,6 +192,29 @@ TEST(MarginaliseSecondNewest, JoinsTheImuAndDropsTheImages) {
   EXPECT_LT((T_b5_w.q * window.frames[7].T_w_b().q).angularDistance(window.frames[7].imu->deltaR()), 1e-4);
 }
 
+TEST(MarginaliseSecondNewest, HasNotMovedOnlyIfNeitherFrameHas) {
+  for (const bool before : {false, true})
+    for (const bool newest : {false, true}) {
+      SlidingWindow window = flownWindow();
+      window.frames[6].still = before;
+      window.frames[7].still = newest;
+      marginaliseSecondNewest(window);
+      EXPECT_EQ(window.frames[7].still, before && newest);
+    }
+}
+
+TEST(MarginaliseOldest, AFrameThatHasNotMovedSinceIsHeldByThePrior) {
+  const auto informationOnPosition = [](bool still) {
+    SlidingWindow window = flownWindow();
+    window.frames[1].still = still;
+    marginaliseOldest(window, kParams);
+    const WindowPrior& prior = window.priors.back();
+    const NormalEquations eq = linearise(window, {{prior.factor.get(), nullptr, prior.blocks}}, {{BlockKey::kPose, 1}});
+    return eq.H.topLeftCorner<3, 3>().trace();
+  };
+  EXPECT_GT(informationOnPosition(true), informationOnPosition(false));
+}
+
 TEST(MarginaliseSecondNewest, KeepsWhatPriorsKnewThroughTheFrame) {
   SlidingWindow window = flownWindow();
   WindowPrior both;  // ties the motions of frames 5 and 6 together

@@ -176,10 +176,13 @@ struct EstimatorParams {
   int keyframe_min_tracked = 20;        ///< fewer points shared with the last keyframe make a new one
   double max_keyframe_interval_s = 10;  ///< a keyframe at least this often, also at rest
   int max_iterations = 8;
-  bool detect_rest = true;            ///< by points, IMU and speed; a frame at rest gets a zero-velocity observation
-  double rest_disparity_px = 0.25;    ///< median motion between window frames below which rest is assumed
-  double rest_speed = 0.05;           ///< estimated speed above which it is not [m/s]
-  double rest_velocity_sigma = 0.01;  ///< zero-velocity observation at rest [m/s]
+  bool detect_rest = true;             ///< by points, IMU and speed; a frame at rest gets a zero-velocity observation
+  double rest_disparity_px = 0.25;     ///< median motion between window frames below which rest is assumed
+  double rest_speed = 0.05;            ///< estimated speed above which it is not [m/s]
+  double rest_images_s = 1;            ///< for so long the images of a body rest that trembles, and points move by less
+  double rest_images_px = 1;           ///< than this (median); twice what tracks drift by in changing light
+  double rest_velocity_sigma = 0.01;   ///< zero-velocity observation at rest [m/s]
+  double rest_position_sigma = 0.005;  ///< by which the position may change in a rest [m]: 1 px, 2 m away
   FactorParams factors;
   CalibrationParams calibration;
   LandmarkParams landmarks;
@@ -198,7 +201,10 @@ struct EstimatorParams {
     field("detect_rest", detect_rest);
     field("rest_disparity_px", rest_disparity_px, Range{0, 100});
     field("rest_speed", rest_speed, Range{0, 100});
+    field("rest_images_s", rest_images_s, Range{0.1, 1000});
+    field("rest_images_px", rest_images_px, Range{0, 100});
     field("rest_velocity_sigma", rest_velocity_sigma, Range{1e-6, 10});
+    field("rest_position_sigma", rest_position_sigma, Range{1e-6, 10});
     field("factors", factors);
     field("calibration", calibration);
     field("landmarks", landmarks);

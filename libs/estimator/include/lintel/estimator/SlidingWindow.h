@@ -40,6 +40,7 @@ struct WindowFrame {
   std::shared_ptr<Preintegration> imu;             ///< from the frame before; null for the first
   Eigen::Vector3d gyro = Eigen::Vector3d::Zero();  ///< measured at t_ns, bias included [rad/s]
   bool at_rest = false;                            ///< gets a zero-velocity observation
+  bool still = false;                              ///< has not moved since the frame before (RestDetection)
   bool blind = false;                              ///< sees next to nothing that is placed: the IMU carries it
 
   Pose T_w_b() const { return poseFromBlock(pose.data()); }

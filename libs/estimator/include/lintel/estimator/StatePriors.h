@@ -38,6 +38,9 @@ PriorParts makeCorrectionPriors(const CalibrationParams& params);
 /// Zero velocity of a body at rest, to within `velocity_sigma` [m/s]; a motion block.
 std::unique_ptr<PriorFactor> makeRestPrior(double velocity_sigma);
 
+/// Two poses at one position, to within `position_sigma` [m]; their pose blocks, the earlier one first.
+std::unique_ptr<PriorFactor> makeStillPrior(const PoseBlock& earlier, double position_sigma);
+
 /// The biases of a run's first state about zero; a motion block.
 std::unique_ptr<PriorFactor> makeBiasPrior(const InitializerParams& params);
 
