@@ -39,7 +39,7 @@ TrajectoryErrors relativeErrorsOf(const nlohmann::ordered_json& evaluation) {
   for (std::size_t k = 0; k < 64; ++k) {
     const std::string at = "/trajectory/relative/" + std::to_string(k);
     const auto number = [&](const std::string& name) {
-      return BenchRun::number(evaluation, at + "/translation_m/" + name);
+      return BenchRun::number(evaluation, std::string(at).append("/translation_m/").append(name));
     };
     RelativeErrors r;
     r.distance_m = BenchRun::number(evaluation, at + "/distance_m");

@@ -109,7 +109,7 @@ class SuiteReader {
       if (known.count(key) > 0) continue;
       std::string list;
       for (const std::string& k : known) list.append(" ").append(k);
-      fail(entry.first, "unknown key '" + key + "'; known here:" + list);
+      fail(entry.first, std::string("unknown key '").append(key).append("'; known here:").append(list));
     }
   }
 

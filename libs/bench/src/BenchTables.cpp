@@ -46,8 +46,8 @@ void markBest(std::vector<Cell>& row, const BenchSuite& suite, const BenchResult
   double best = kInfinity;
   const auto valueOf = [&](std::size_t c) {
     const BenchCell& cell = results.cell(r, c);
-    const double v = value(cell);
-    return cell.runs() > 0 && cell.complete() && std::isfinite(v) ? v : kInfinity;
+    if (cell.runs() == 0 || !cell.complete() || !std::isfinite(value(cell))) return kInfinity;
+    return value(cell);
   };
   for (std::size_t c = 0; c < suite.configurations.size(); ++c) best = std::min(best, valueOf(c));
   if (suite.configurations.size() < 2 || best == kInfinity) return;

@@ -46,6 +46,7 @@ std::vector<std::size_t> BoxIndex::touching(const Box& box) const {
   std::vector<Entry> found;
   tree_->boxes.query(bg::index::intersects(treeBox(box)), std::back_inserter(found));
   std::vector<std::size_t> places;
+  places.reserve(found.size());
   for (const Entry& entry : found) places.push_back(entry.second);
   std::sort(places.begin(), places.end());
   return places;

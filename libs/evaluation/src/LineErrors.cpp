@@ -121,6 +121,7 @@ void addRecall(LineErrors& result, const std::vector<AlignedLine>& lines, const 
   constexpr double kBeside_m = 0.2;  // lines farther off cannot matter: above any tolerance
   const auto reach_m = [](const AlignedLine& line) { return 0.5 * line.segment.length() + kBeside_m; };
   std::vector<BoxIndex::Box> boxes;
+  boxes.reserve(lines.size());
   for (const AlignedLine& line : lines) boxes.push_back(boxAroundMiddle(line.segment, reach_m(line)));
   const BoxIndex index(boxes);
   Shares recall(params.tolerances_m);

@@ -43,6 +43,7 @@ std::vector<Eigen::Vector3d> piecesOf(const Segment3& segment, double step_m) {
 
 BoxIndex indexOf(const std::vector<TrueLine>& truth) {
   std::vector<BoxIndex::Box> boxes;
+  boxes.reserve(truth.size());
   for (const TrueLine& line : truth) boxes.push_back(boxOf(line.segment_w));
   return BoxIndex(boxes);
 }

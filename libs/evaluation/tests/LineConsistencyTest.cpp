@@ -25,7 +25,7 @@ class LineConsistencyTest : public ::testing::Test {
       Pose T_w_b;
       T_w_b.p = Vector3d(0.1 * static_cast<double>(k), 0, 0.05 * static_cast<double>(k));
       const auto t_ns = static_cast<std::int64_t>(k) * 100'000'000;
-      map_.keyframes.push_back({k, t_ns, T_w_b, {}, {}, {}});
+      map_.keyframes.push_back({k, t_ns, T_w_b});
       truth_.emplace_back(t_ns, T_w_b);
     }
     edges_.push_back({{{-1, 5, 0}, {2, 5, 0}}, 100});

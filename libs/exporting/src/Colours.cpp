@@ -47,6 +47,7 @@ Rgb scaleColour(double s) {
 LineColouring::LineColouring(LineColour mode, const std::vector<const MapLine*>& lines) : mode_(mode) {
   if (mode != LineColour::kUncertainty && mode != LineColour::kHeight) return;
   std::vector<double> values;
+  values.reserve(lines.size());
   for (const MapLine* line : lines) values.push_back(shown(*line));
   if (values.empty()) values.push_back(0);
   low_ = nearestQuantile(values, 0.02);

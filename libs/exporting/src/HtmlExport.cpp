@@ -54,7 +54,9 @@ Json rounded(double v) {
   return std::strtod(text, nullptr);
 }
 
-double secondsSince(std::int64_t t_ns, std::int64_t origin_ns) { return std::round((t_ns - origin_ns) * 1e-7) / 100; }
+double secondsSince(std::int64_t t_ns, std::int64_t origin_ns) {
+  return std::round(static_cast<double>(t_ns - origin_ns) * 1e-7) / 100;
+}
 
 Json linesData(const Drawing& drawing, std::int64_t origin_ns) {
   Floats ends;

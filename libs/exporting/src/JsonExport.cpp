@@ -174,6 +174,7 @@ class JsonWriter {
   template <class Thing>
   static std::vector<const Thing*> placesOf(const std::vector<Thing>& things) {
     std::vector<const Thing*> places;
+    places.reserve(things.size());
     for (const Thing& thing : things) places.push_back(&thing);
     return places;
   }

@@ -49,9 +49,7 @@ mrpt::Clock::time_point mrptTime(std::int64_t t_ns) {
 }
 
 mrpt::poses::CPose3D mrptPose(const Pose& T) {
-  return mrpt::poses::CPose3D::FromQuaternionAndTranslation(
-      mrpt::math::CQuaternionDouble(T.q.w(), T.q.x(), T.q.y(), T.q.z()),
-      mrpt::math::TPoint3D(T.p.x(), T.p.y(), T.p.z()));
+  return {mrpt::math::CQuaternionDouble(T.q.w(), T.q.x(), T.q.y(), T.q.z()), T.p.x(), T.p.y(), T.p.z()};
 }
 
 mrpt::maps::CSimplePointsMap::Ptr cloudOfPoints(const Seen& seen, const Pose& T_c_w) {

@@ -43,7 +43,7 @@ std::optional<Tube> makeTube(const Eigen::Vector3d& start, const Eigen::Vector3d
   const Eigen::Matrix<double, 3, 2> across = radius_m * tangentBasis(along);
   Tube tube;
   for (std::size_t i = 0; i < 4; ++i) {
-    const Eigen::Vector3d offset = (i < 2 ? 1 : -1) * across.col(i % 2);
+    const Eigen::Vector3d offset = (i < 2 ? 1 : -1) * across.col(static_cast<Eigen::Index>(i % 2));
     tube.corners[i] = start + offset;
     tube.corners[i + 4] = end + offset;
   }

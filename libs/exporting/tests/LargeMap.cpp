@@ -22,7 +22,8 @@ LineMap repeated(const LineMap& map, int times) {
       map.trajectory.empty() ? 0 : map.trajectory.back().first - map.trajectory.front().first + 50000000;
   for (int i = 1; i < times; ++i) {
     const auto n = static_cast<std::uint64_t>(i);
-    const Eigen::Vector3d shift(3.0 * (i % 50), 3.0 * (i / 50), 0);
+    const int row = i / 50;
+    const Eigen::Vector3d shift(3.0 * (i % 50), 3.0 * row, 0);
     const std::int64_t later_ns = duration_ns * i;
     for (MapKeyframe keyframe : map.keyframes) {
       keyframe.id += n * idsOf(map.keyframes), keyframe.t_ns += later_ns, keyframe.T_w_b.p += shift;

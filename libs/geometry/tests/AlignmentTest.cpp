@@ -88,7 +88,9 @@ TEST(Alignment, NoSmallStepImprovesOnIt) {
         scaled.scale *= 1 + step;
         EXPECT_GT(cost(turned, from, to), cost(best, from, to));
         EXPECT_GT(cost(shifted, from, to), cost(best, from, to));
-        if (kind == AlignmentKind::kSim3) EXPECT_GT(cost(scaled, from, to), cost(best, from, to));
+        if (kind == AlignmentKind::kSim3) {
+          EXPECT_GT(cost(scaled, from, to), cost(best, from, to));
+        }
       }
   }
 }

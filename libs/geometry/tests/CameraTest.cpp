@@ -200,7 +200,7 @@ TEST(Camera, ProjectsByHand) {
 }
 
 TEST(Camera, UndistortFromAPlaceNearEndsWhereItDoesOtherwise) {
-  for (const Eigen::Vector2d px : {Eigen::Vector2d(10, 20), Eigen::Vector2d(400, 250), Eigen::Vector2d(740, 470)}) {
+  for (const Eigen::Vector2d& px : {Eigen::Vector2d(10, 20), Eigen::Vector2d(400, 250), Eigen::Vector2d(740, 470)}) {
     const Eigen::Vector2d expected = kEuroc.normalise(px);
     EXPECT_LT((kEuroc.normalise(px, expected + Eigen::Vector2d(0.02, -0.01)) - expected).norm(), 1e-11);
     EXPECT_LT((kEuroc.normalise(px, expected) - expected).norm(), 1e-11);

@@ -137,8 +137,8 @@ TEST_P(RandomLenses, DerivativesByThePointAreNumericOnes) {
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(Models, RandomLenses, testing::ValuesIn(kModels), [](const auto& info) {
-  std::string name = lensName(info.param).name;
+INSTANTIATE_TEST_SUITE_P(Models, RandomLenses, testing::ValuesIn(kModels), [](const auto& lens) {
+  std::string name = lensName(lens.param).name;
   for (char& c : name)
     if (c == '-') c = '_';
   return name;

@@ -130,6 +130,7 @@ std::vector<bool> certainGroups(const LineMap& map) {
     if (line.group >= 0) lengths[static_cast<std::size_t>(line.group)] += line.segment_w.length();
   }
   std::vector<bool> certain;
+  certain.reserve(lengths.size());
   for (const double length : lengths) certain.push_back(length >= kLeastShare * total);
   return certain;
 }

@@ -13,7 +13,8 @@ TEST(WordIndex, TheViewWithTheSameFeaturesScoresHighest) {
   WordIndex index;
   std::vector<PlaceView> views(10);
   for (PlaceView& view : views) {
-    for (int i = 0; i < 50; ++i) view.features.push_back({{}, PlaceFeature::kNoTrack, 0, world.anyLook()});
+    for (int i = 0; i < 50; ++i)
+      view.features.push_back({Eigen::Vector2f::Zero(), PlaceFeature::kNoTrack, 0, world.anyLook()});
     index.add(view);
   }
   PlaceView query;

@@ -46,7 +46,9 @@ TEST(ShiftedRecording, AFrameGetsTheSamplesOfItsTimeOnTheOtherClock) {
       if (frames > 38) continue;  // with the later clock the last frames are not covered
       ASSERT_FALSE(step->imu.empty()) << frames;
       EXPECT_EQ(step->imu.back().t_ns, step->frame.t_ns);
-      if (frames > 1) EXPECT_EQ(step->imu.front().t_ns, last_ns);
+      if (frames > 1) {
+        EXPECT_EQ(step->imu.front().t_ns, last_ns);
+      }
       last_ns = step->frame.t_ns;
       for (const ImuSample& sample : step->imu)
         EXPECT_NEAR(sample.gyro.x(), 1e-6 * static_cast<double>(sample.t_ns) + 1000 * offset_s, 1e-6);
