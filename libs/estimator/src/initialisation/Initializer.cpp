@@ -17,6 +17,7 @@
 #include "lintel/geometry/Rotation.h"
 #include "solver/Marginals.h"
 #include "solver/WindowSolver.h"
+#include "window/ImuStatistics.h"
 #include "window/OutlierRejection.h"
 #include "window/WindowFactors.h"
 
@@ -29,33 +30,6 @@ constexpr double kKnownOffset_s = 0.002;
 // round: what is left of it changes the scale's sigma by less.
 constexpr double kHopelessBefore = 3, kHopelessAfterFirst = 2;
 constexpr char kScaleUnknown[] = "waiting for a motion that shows the scale";
-
-/// Mean and standard deviation (norm over the axes) of the buffer's IMU.
-struct ImuStatistics {
-  Eigen::Vector3d mean_gyro = Eigen::Vector3d::Zero(), mean_accel = Eigen::Vector3d::Zero();
-  double std_gyro = 0, std_accel = 0;
-};
-
-ImuStatistics imuStatistics(const SlidingWindow& window) {
-  ImuStatistics s;
-  double n = 0;
-  const auto each = [&](auto&& f) {
-    for (const WindowFrame& frame : window.frames)
-      if (frame.imu)
-        for (const ImuSample& sample : frame.imu->samples()) f(sample);
-  };
-  each([&](const ImuSample& x) { s.mean_gyro += x.gyro, s.mean_accel += x.accel, n += 1; });
-  if (n < 2) return s;
-  s.mean_gyro /= n;
-  s.mean_accel /= n;
-  each([&](const ImuSample& x) {
-    s.std_gyro += (x.gyro - s.mean_gyro).squaredNorm();
-    s.std_accel += (x.accel - s.mean_accel).squaredNorm();
-  });
-  s.std_gyro = std::sqrt(s.std_gyro / n);
-  s.std_accel = std::sqrt(s.std_accel / n);
-  return s;
-}
 
 /// Parallax from the oldest frame that shares enough points with the newest: where tracks are short none is shared with
 /// the first.
@@ -98,9 +72,10 @@ double medianDisparityPx(const SlidingWindow& window, std::size_t frame_a, std::
 
 bool Initializer::atRest(const SlidingWindow& window) const {
   const InitializerParams& p = params_.initializer;
-  const ImuStatistics imu = imuStatistics(window);
+  const std::size_t n = window.frames.size(), first = n - std::min(n, static_cast<std::size_t>(p.min_frames));
+  const ImuStatistics imu = imuStatistics(window, first + 1);
   if (imu.std_gyro > p.static_gyro_std || imu.std_accel > p.static_accel_std) return false;
-  const double disparity = medianDisparityPx(window, 0, window.frames.size() - 1, false);
+  const double disparity = medianDisparityPx(window, first, n - 1, false);
   return disparity >= 0 && disparity < p.static_disparity_px;
 }
 
@@ -109,18 +84,15 @@ std::string Initializer::initialise(SlidingWindow& window) const {
   if (n < params_.initializer.min_frames) return "collecting frames";
   for (std::size_t k = 1; k < window.frames.size(); ++k)
     if (!window.frames[k].imu || window.frames[k].imu->dt_s() <= 0) return "waiting for IMU samples between all frames";
-  // the newest frames decide: it may have been put down just now
-  SlidingWindow newest = window;
-  while (static_cast<int>(newest.frames.size()) > params_.initializer.min_frames)
-    newest.removeFrame(newest.frames.front().id, false);
-  newest.frames.front().imu.reset();
-  if (!atRest(newest)) return startMoving(window);
-  window = std::move(newest);
+  if (!atRest(window)) return startMoving(window);
+  while (static_cast<int>(window.frames.size()) > params_.initializer.min_frames)
+    window.removeFrame(window.frames.front().id, false);
+  window.frames.front().imu.reset();
   return startStatic(window);
 }
 
 std::string Initializer::startStatic(SlidingWindow& window) const {
-  const ImuStatistics imu = imuStatistics(window);
+  const ImuStatistics imu = imuStatistics(window, 1);
   // the accelerometer at rest shows the reaction to gravity: straight up
   const Eigen::Quaterniond R_w_b = rotationBetween(imu.mean_accel, Eigen::Vector3d::UnitZ());
   MotionBlock motion = MotionBlock::Zero();

@@ -8,6 +8,13 @@ namespace {
 
 constexpr double kLongRest_s = 0.5;  // shorter: the IMU alone joins the frames before and after it well
 
+template <class Tracks>
+int seenIn(const Tracks& tracks, FrameId frame) {
+  return static_cast<int>(std::count_if(tracks.begin(), tracks.end(), [frame](const auto& entry) {
+    return !entry.second.sightings.empty() && entry.second.sightings.back().frame == frame;
+  }));
+}
+
 }  // namespace
 
 bool secondNewestIsKeyframe(const SlidingWindow& window, const EstimatorParams& params) {
@@ -36,15 +43,6 @@ bool secondNewestIsKeyframe(const SlidingWindow& window, const EstimatorParams& 
   if (shared < params.keyframe_min_tracked) return true;
   return sum / shared * window.camera().meanFocal() >= params.keyframe_parallax_px;
 }
-
-namespace {
-template <class Tracks>
-int seenIn(const Tracks& tracks, FrameId frame) {
-  return static_cast<int>(std::count_if(tracks.begin(), tracks.end(), [frame](const auto& entry) {
-    return !entry.second.sightings.empty() && entry.second.sightings.back().frame == frame;
-  }));
-}
-}  // namespace
 
 int pointsInNewest(const SlidingWindow& window) { return seenIn(window.points, window.frames.back().id); }
 int linesInNewest(const SlidingWindow& window) { return seenIn(window.lines, window.frames.back().id); }

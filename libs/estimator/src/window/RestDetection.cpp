@@ -2,18 +2,18 @@
 #include "window/RestDetection.h"
 
 #include <algorithm>
-#include <cmath>
 #include <vector>
 
 #include "initialisation/Initializer.h"
 #include "lintel/core/Quantiles.h"
 #include "lintel/geometry/Rotation.h"
+#include "window/ImuStatistics.h"
 
 namespace lintel {
 namespace {
 
 constexpr std::size_t kLeastPoints = 10;  // that two images share
-constexpr double kMaxTurn_rad = 0.02;  // by the gyroscope, its bias left over: more, and images show what moves along
+constexpr double kMaxTurn_rad_s = 0.02;  // by the gyroscope, its bias left over: more, and images show what moves along
 
 double medianShift_px(const std::unordered_map<TrackId, Eigen::Vector2d>& a,
                       const std::unordered_map<TrackId, Eigen::Vector2d>& b) {
@@ -32,20 +32,9 @@ bool isQuiet(const SlidingWindow& window, const EstimatorParams& params) {
   if (velocityOf(window.frames[n - 1].motion.data()).norm() > params.rest_speed) return false;
   const double disparity = medianDisparityPx(window, n - 2, n - 1, false);
   if (disparity < 0 || disparity > params.rest_disparity_px) return false;
-  const Preintegration* imu = window.frames[n - 1].imu.get();
-  if (!imu || imu->samples().size() < 5) return false;
-  Eigen::Vector3d mean_gyro = Eigen::Vector3d::Zero(), mean_accel = Eigen::Vector3d::Zero();
-  for (const ImuSample& s : imu->samples()) mean_gyro += s.gyro, mean_accel += s.accel;
-  const auto count = static_cast<double>(imu->samples().size());
-  mean_gyro /= count;
-  mean_accel /= count;
-  double gyro = 0, accel = 0;
-  for (const ImuSample& s : imu->samples()) {
-    gyro += (s.gyro - mean_gyro).squaredNorm();
-    accel += (s.accel - mean_accel).squaredNorm();
-  }
-  return std::sqrt(gyro / count) < params.initializer.static_gyro_std &&
-         std::sqrt(accel / count) < params.initializer.static_accel_std;
+  const ImuStatistics imu = imuStatistics(window, n - 1);
+  return imu.samples >= 5 && imu.std_gyro < params.initializer.static_gyro_std &&
+         imu.std_accel < params.initializer.static_accel_std;
 }
 
 void RestDetection::add(const SlidingWindow& window) {
@@ -72,7 +61,7 @@ bool RestDetection::imagesRest() const {
     return false;
   Eigen::Quaterniond turned = Eigen::Quaterniond::Identity();
   for (std::size_t k = 1; k < views_.size(); ++k) turned = turned * views_[k].turned;
-  if (logRotation(turned).norm() > kMaxTurn_rad * params_.rest_images_s) return false;
+  if (logRotation(turned).norm() > kMaxTurn_rad_s * params_.rest_images_s) return false;
   for (std::size_t k = 0; k + 1 < views_.size(); ++k) {
     const double shift_px = medianShift_px(views_[k].points_px, views_.back().points_px);
     if (shift_px < 0 || shift_px > params_.rest_images_px) return false;
