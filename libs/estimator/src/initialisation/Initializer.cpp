@@ -72,10 +72,9 @@ double medianDisparityPx(const SlidingWindow& window, std::size_t frame_a, std::
 
 bool Initializer::atRest(const SlidingWindow& window) const {
   const InitializerParams& p = params_.initializer;
-  const std::size_t n = window.frames.size(), first = n - std::min(n, static_cast<std::size_t>(p.min_frames));
-  const ImuStatistics imu = imuStatistics(window, first + 1);
+  const ImuStatistics imu = imuStatistics(window, 1);
   if (imu.std_gyro > p.static_gyro_std || imu.std_accel > p.static_accel_std) return false;
-  const double disparity = medianDisparityPx(window, first, n - 1, false);
+  const double disparity = medianDisparityPx(window, 0, window.frames.size() - 1, false);
   return disparity >= 0 && disparity < p.static_disparity_px;
 }
 
@@ -84,11 +83,7 @@ std::string Initializer::initialise(SlidingWindow& window) const {
   if (n < params_.initializer.min_frames) return "collecting frames";
   for (std::size_t k = 1; k < window.frames.size(); ++k)
     if (!window.frames[k].imu || window.frames[k].imu->dt_s() <= 0) return "waiting for IMU samples between all frames";
-  if (!atRest(window)) return startMoving(window);
-  while (static_cast<int>(window.frames.size()) > params_.initializer.min_frames)
-    window.removeFrame(window.frames.front().id, false);
-  window.frames.front().imu.reset();
-  return startStatic(window);
+  return atRest(window) ? startStatic(window) : startMoving(window);
 }
 
 std::string Initializer::startStatic(SlidingWindow& window) const {

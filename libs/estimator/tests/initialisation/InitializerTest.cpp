@@ -123,22 +123,6 @@ TEST_F(InitializerTest, StartsAtRest) {
   EXPECT_LT((biasOf(window.frames.back().motion.data()).gyro - f.truth(22).bias_gyro).norm(), 0.001);
 }
 
-TEST_F(InitializerTest, StartsWhenItHasComeToRest) {
-  const DelayedStart resting(std::make_shared<FigureTrajectory>(), 4);
-  const TrackedFlight f = noisyFlight(0.1, ImuSimulatorParams{}, 4, resting);
-  SlidingWindow window = bufferOf(f, 0, 24);
-  const FrameId arrival = window.frames[12].id;
-  for (auto& [id, track] : window.points)
-    for (PointSighting& s : track.sightings)
-      if (s.frame < arrival) s.observation.ray.x() += 0.01 * static_cast<double>(arrival - s.frame);
-  ASSERT_GT(medianDisparityPx(window, 0, 23, false), 10);
-  ASSERT_EQ(initializer_.initialise(window), "");
-  EXPECT_EQ(window.frames.size(), static_cast<std::size_t>(kParams.initializer.min_frames));
-  EXPECT_TRUE(window.frames.front().at_rest);
-  EXPECT_EQ(window.frames.front().imu, nullptr);
-  EXPECT_LT(tiltError(window.frames.back(), f.truth(46)), 0.02);
-}
-
 TEST_F(InitializerTest, PureRotationIsNeverAccepted) {
   FigureParams turning;
   turning.translation = 0;
