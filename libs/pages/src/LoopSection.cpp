@@ -126,6 +126,7 @@ void refusals(HtmlPage& page, const LoopResult& loops) {
     if (!pair.refusal.empty()) ++reasons[pair.refusal];
   if (reasons.empty()) return;
   std::vector<std::string> items;
+  items.reserve(reasons.size());
   for (const auto& [reason, n] : reasons) items.push_back(std::to_string(n) + ": " + reason);
   page.paragraph("Pairs of images that look alike and were refused:");
   page.list(items);

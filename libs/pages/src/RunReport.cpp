@@ -39,7 +39,7 @@ std::string differences(const std::string& text, const std::string& other) {
       if (colon == std::string::npos) continue;
       path.resize(depth);
       path.push_back(line.substr(2 * depth, colon - 2 * depth));
-      if (line.find_first_not_of(" ", colon + 1) == std::string::npos) continue;
+      if (line.find_first_not_of(' ', colon + 1) == std::string::npos) continue;
       std::string key;
       for (const std::string& part : path) key += (key.empty() ? "" : ".") + part;
       lines.push_back(key + " =" + line.substr(colon + 1));

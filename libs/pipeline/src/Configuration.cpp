@@ -64,7 +64,8 @@ class Reader {
       if (known_.count(key) > 0) continue;
       std::string list;
       for (const std::string& k : known_) list += (list.empty() ? "" : " ") + k;
-      throw ConfigurationError(where(entry.first) + "unknown key " + path_ + key + "; known here: " + list);
+      throw ConfigurationError(
+          where(entry.first).append("unknown key ").append(path_).append(key).append("; known here: ").append(list));
     }
   }
 

@@ -34,6 +34,7 @@ std::vector<std::string> writeResults(const OdometryResult& result, const std::s
 std::vector<std::string> writeExports(const LineMap& map, const std::string& folder,
                                       const std::vector<std::string>& exports) {
   std::vector<std::string> files;
+  files.reserve(exports.size());
   for (const std::string& extension : exports)
     files.push_back(exportMap(map, (fs::path(folder) / ("map." + extension)).string()).files.front());
   return files;

@@ -149,9 +149,9 @@ std::string RunCheck::imuFault() const {
 }
 
 std::string RunCheck::cause() const {
-  if (const std::string fault = images_.fault(); !fault.empty()) return fault;
-  if (const std::string fault = turns_.fault(Suspicion::kSome, clock_offset_s_); !fault.empty()) return fault;
-  if (const std::string fault = accelerometer_.axesFault(); !fault.empty()) return fault;
+  if (std::string fault = images_.fault(); !fault.empty()) return fault;
+  if (std::string fault = turns_.fault(Suspicion::kSome, clock_offset_s_); !fault.empty()) return fault;
+  if (std::string fault = accelerometer_.axesFault(); !fault.empty()) return fault;
   if (const double lever_m = rig_.T_b_c.p.norm(); lever_m > kLongLever_m) {
     char text[120];
     std::snprintf(text, sizeof text, "T_BS says that the camera is %.1f m away from the IMU: check its unit (m)",
@@ -168,9 +168,9 @@ std::string RunCheck::verdict(const OdometryStatistics& s, const Rig& estimated)
   // The gyroscope first: what the accelerometer shows is turned by it.
   if (const std::string fault = turns_.fault(Suspicion::kNone, clock_offset_s_); !fault.empty())
     return images_.fault().empty() ? fault : images_.fault() + "; " + fault;
-  if (const std::string fault = accelerometer_.sizeFault(); !fault.empty()) return fault;
+  if (std::string fault = accelerometer_.sizeFault(); !fault.empty()) return fault;
   const bool no_pose = s.frames_with_pose == 0;
-  const std::string fault = no_pose ? "no pose was found (" + s.last_wait + ")" : symptom(s, estimated);
+  std::string fault = no_pose ? "no pose was found (" + s.last_wait + ")" : symptom(s, estimated);
   if (fault.empty()) return fault;
   const std::string likely = cause();
   if (!likely.empty()) return fault + "; " + likely;

@@ -37,7 +37,7 @@ namespace fs = std::filesystem;
 StampedPoses readTruth(const std::string& path) {
   const bool recording = fs::is_directory(path) || fs::path(path).extension() == ".rawlog";
   if (!recording) return readTrajectory(path);
-  const StampedPoses poses = readGroundTruth(path);
+  StampedPoses poses = readGroundTruth(path);
   if (poses.empty()) throw EvaluationError(path + ": carries no ground truth; give a file with --groundtruth");
   return poses;
 }

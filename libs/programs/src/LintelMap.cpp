@@ -39,6 +39,7 @@ const std::map<std::string, MapLayer> kLayers{{"lines", MapLayer::kLines},
 template <class Value>
 std::vector<std::string> namesOf(const std::map<std::string, Value>& values) {
   std::vector<std::string> names;
+  names.reserve(values.size());
   for (const auto& entry : values) names.push_back(entry.first);
   return names;
 }
@@ -112,8 +113,12 @@ class LintelMap {
                                ": take a map of lintel-vio");
     for (const std::string& output : outputs_)
       if (const std::string missing = missingFor(map, output, params); !missing.empty())
-        throw std::runtime_error(input_ + ": holds no " + missing + ", so " + output +
-                                 " would be of no use: choose another form or --layers");
+        throw std::runtime_error(std::string(input_)
+                                     .append(": holds no ")
+                                     .append(missing)
+                                     .append(", so ")
+                                     .append(output)
+                                     .append(" would be of no use: choose another form or --layers"));
   }
 
   void addOptions() {
