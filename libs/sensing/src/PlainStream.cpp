@@ -48,7 +48,7 @@ bool inOrder(const std::string& a, const std::string& b) {
 fs::path imagesFolder(const fs::path& path) {
   std::error_code ignored;
   for (const char* name : {"", "images", "data", "rgb", "cam0", "cam0/data", "frames"}) {
-    const fs::path folder = path / name;
+    fs::path folder = path / name;
     if (!fs::is_directory(folder, ignored)) continue;
     for (const auto& entry : fs::directory_iterator(folder, ignored))
       if (isImage(entry.path())) return folder;

@@ -82,7 +82,7 @@ class ImuTable {
 
   std::optional<ImuSample> next(const WarningSink& warn) {
     while (std::exchange(pending_, false) || rows_.next()) {
-      const std::optional<ImuSample> sample = read(warn);
+      std::optional<ImuSample> sample = read(warn);
       if (sample && gate_.admit(
                         *sample, [this] { return rows_.where(); }, warn))
         return sample;

@@ -48,7 +48,7 @@ void RawlogOutput::checkExisting(bool overwrite) const {
 
 /// The file is made for it: it is written anew in any case.
 void RawlogOutput::lockFile() {
-  std::ofstream(file(), std::ios::app);
+  std::ofstream(file(), std::ios::app).close();
   std::error_code error;
   if (!fs::exists(file(), error))
     throw std::runtime_error(file() + ": cannot be made: choose a place you may write to");

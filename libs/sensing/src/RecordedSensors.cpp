@@ -64,6 +64,7 @@ std::vector<RecordedSensor> sensorsOfRawlog(const std::string& path) {
     if (found.empty()) throw;
   }
   std::vector<RecordedSensor> sensors;
+  sensors.reserve(found.size());
   for (const auto& [name, stamps] : found) sensors.push_back({name.first, name.second, stamps.count, stamps.rate_hz()});
   return sensors;
 }

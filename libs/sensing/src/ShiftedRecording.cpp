@@ -3,6 +3,7 @@
 
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include "ImuBatcher.h"
 
@@ -12,7 +13,7 @@ ShiftedRecording::ShiftedRecording(Recording& source, std::deque<FrameWithImu> r
                                    std::exception_ptr fault)
     : source_(source),
       shift_ns_(-std::llround(1e9 * offset_s)),
-      fault_(fault),
+      fault_(std::move(fault)),  // NOLINT(bugprone-throw-keyword-missing): kept here, thrown by read()
       ahead_(std::move(read)),
       newest_ns_(std::numeric_limits<std::int64_t>::min()),
       batcher_(std::make_unique<ImuBatcher>([this](std::int64_t) { return nextSample(); })) {}

@@ -69,7 +69,7 @@ std::vector<double> YamlFile::numbers(const std::string& key) const {
 }
 
 std::vector<double> YamlFile::list(const std::string& key, std::size_t count) const {
-  const std::vector<double> values = numbers(key);
+  std::vector<double> values = numbers(key);
   if (values.size() != count)
     throw RecordingError(where(key) + " has " + std::to_string(values.size()) + " values, expected " +
                          std::to_string(count));
