@@ -35,7 +35,8 @@ void spread(const Camera& camera, std::vector<cv::KeyPoint>& corners) {
   const auto isFull = [&](const cv::KeyPoint& k) {
     const int x = static_cast<int>(k.pt.x) * kColumns / camera.width,
               y = static_cast<int>(k.pt.y) * kRows / camera.height;
-    return taken[static_cast<std::size_t>(y * kColumns + x)]++ >= kPerCell;
+    const int cell = y * kColumns + x;
+    return taken[static_cast<std::size_t>(cell)]++ >= kPerCell;
   };
   corners.erase(std::remove_if(corners.begin(), corners.end(), isFull), corners.end());
 }

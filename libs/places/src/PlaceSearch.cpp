@@ -97,6 +97,7 @@ class Search {
     const std::vector<LocalPoint> points = localPoints(keyframes_, earlier, kReach, points_w_);
     const std::vector<LookAlike> matches = matchByLooks(points, view, params_.max_bits);
     std::vector<Sighting> sightings;
+    sightings.reserve(matches.size());
     for (const LookAlike& m : matches)
       sightings.push_back({points[m.point].p_w, camera_.ray(view.features[m.feature].px.cast<double>()).normalized()});
     ResectionParams resection;
@@ -172,9 +173,8 @@ class Search {
                        {}});
       places.push_back(i);
     }
-    const auto alignments = alignRuns(pairs, params_.min_support + 1, [this](int earlier, int later, const Pose& T) {
-      return canFollow(earlier, later, T);
-    });
+    auto alignments = alignRuns(pairs, params_.min_support + 1,
+                                [this](int earlier, int later, const Pose& T) { return canFollow(earlier, later, T); });
     for (std::size_t k = 0; k < pairs.size(); ++k) found_[places[k]].pair.refusal = pairs[k].refusal;
     return alignments;
   }
@@ -208,6 +208,7 @@ class Search {
         if (s.earlier != s.later) ++votes[{s.earlier, s.later}];
     }
     std::vector<SamePoint> same;
+    same.reserve(votes.size());
     for (const auto& [tracks, n] : votes) same.push_back({tracks.first, tracks.second, n});
     return same;
   }

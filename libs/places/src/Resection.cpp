@@ -26,10 +26,10 @@ template <class Take>
 void posesOfTwo(const std::array<Eigen::Vector3d, 2>& p_w, const std::array<Eigen::Vector3d, 2>& bearing, Take take) {
   Eigen::Matrix<double, 4, 3> M;
   Eigen::Matrix<double, 4, 3> known;  // factors of cos, sin and 1
-  for (int i = 0; i < 2; ++i) {
+  for (Eigen::Index i = 0; i < 2; ++i) {
     const Eigen::Vector3d& p = p_w[static_cast<std::size_t>(i)];
     M.middleRows<2>(2 * i) = tangentBasis(bearing[static_cast<std::size_t>(i)]).transpose();
-    for (int row = 2 * i; row < 2 * i + 2; ++row)
+    for (Eigen::Index row = 2 * i; row < 2 * i + 2; ++row)
       known.row(row) << M(row, 0) * p.x() + M(row, 1) * p.y(), M(row, 0) * p.y() - M(row, 1) * p.x(), M(row, 2) * p.z();
   }
   Eigen::Vector4d across;
