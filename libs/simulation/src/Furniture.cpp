@@ -10,13 +10,15 @@ namespace lintel {
 using Eigen::Vector3d;
 
 std::array<WallFrame, 4> wallFrames(const Eigen::AlignedBox3d& hull) {
-  const Vector3d a = hull.min(), b = hull.max(), size = hull.sizes();
+  const Vector3d &a = hull.min(), &b = hull.max();
+  const Vector3d size = hull.sizes();
   const std::array<Vector3d, 4> corner{a, Vector3d(b.x(), a.y(), a.z()), Vector3d(b.x(), b.y(), a.z()),
                                        Vector3d(a.x(), b.y(), a.z())};
   std::array<WallFrame, 4> walls;
   for (int i = 0; i < 4; ++i) {
     // clockwise seen from above: only so x (along), y (up) and z (into the room) are right-handed
-    const Vector3d from = corner[(i + 1) % 4], along = (corner[i] - from).normalized();
+    const Vector3d& from = corner[(i + 1) % 4];
+    const Vector3d along = (corner[i] - from).normalized();
     Eigen::Matrix3d R;
     R << along, Vector3d::UnitZ(), along.cross(Vector3d::UnitZ());
     walls[i] = {Pose{Eigen::Quaterniond(R), from}, i % 2 == 0 ? size.x() : size.y(), size.z()};

@@ -128,7 +128,8 @@ class ImageRenderer::Impl {
     for (int first = 0; first < samples; first += kPacket) {
       for (int i = 0; i < kPacket; ++i) {
         const int row = (first + i) / edges.columns, column = (first + i) % edges.columns;
-        const float dx = (column + 0.5f) / columns - 0.5f, dy = (row + 0.5f) / rows - 0.5f;
+        const float dx = (static_cast<float>(column) + 0.5f) / columns - 0.5f;
+        const float dy = (static_cast<float>(row) + 0.5f) / rows - 0.5f;
         directions[i] = view.R_w_c * pixels_.direction(x, y, dx, dy);
         setDirection(packet, i, directions[i]);
       }

@@ -59,7 +59,8 @@ float LightMap::at(float a, float b) const {
   const float y = std::clamp(b, 0.0f, 1.0f) * static_cast<float>(rows_ - 1);
   const int x0 = std::min(static_cast<int>(x), columns_ - 2), y0 = std::min(static_cast<int>(y), rows_ - 2);
   const float ax = x - static_cast<float>(x0), ay = y - static_cast<float>(y0);
-  const float* row0 = &values_[static_cast<std::size_t>(y0 * columns_ + x0)];
+  const int place = y0 * columns_ + x0;
+  const float* row0 = &values_[static_cast<std::size_t>(place)];
   const float* row1 = row0 + columns_;
   const float top = row0[0] + ax * (row0[1] - row0[0]), bottom = row1[0] + ax * (row1[1] - row1[0]);
   return top + ay * (bottom - top);
