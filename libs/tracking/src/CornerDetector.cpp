@@ -118,7 +118,8 @@ std::vector<cv::Point2f> CornerDetector::detect(const ImagePyramid& pyramid, con
   const int columns = static_cast<int>(size.width / cell) + 1, rows = static_cast<int>(size.height / cell) + 1;
   std::vector<int> in_cell(static_cast<std::size_t>(columns * rows), 0);
   const auto countAt = [&](const cv::Point2f& p) -> int& {
-    return in_cell[static_cast<std::size_t>(static_cast<int>(p.y / cell) * columns + static_cast<int>(p.x / cell))];
+    const int place = static_cast<int>(p.y / cell) * columns + static_cast<int>(p.x / cell);
+    return in_cell[static_cast<std::size_t>(place)];
   };
   for (const cv::Point2f& p : taken) {
     occupied.insert(p);

@@ -11,8 +11,8 @@ namespace lintel {
 void gradientsAcross(const cv::Mat& image, const Eigen::Vector2d& centre, const Eigen::Vector2d& step, double stride,
                      int reach, GradientProfile& profile) {
   constexpr int kBeyond = 64;  // more than a profile near the border reaches out of the image
-  std::array<float, 2 * (2 * kMaxReach + 5)> x, y, grey;
-  const auto places = static_cast<std::size_t>(2 * reach + 5);
+  std::array<float, std::size_t{2} * (2 * kMaxReach + 5)> x, y, grey;
+  const std::size_t places = 2 * static_cast<std::size_t>(reach) + 5;
   const Eigen::Vector2f s = step.cast<float>();
   const Eigen::Vector2f beside = Eigen::Vector2f(-s.y(), s.x()) * static_cast<float>(0.5 / stride);
   const Eigen::Vector2f first = centre.cast<float>() - static_cast<float>(reach + 2) * s;

@@ -146,7 +146,8 @@ double nearest(const Sample& sample, const Fit& fit, double& offset) {
 /// Votes over shifts and tilts around the prediction; among equals the nearer to it wins.
 Fit vote(const std::vector<Sample>& samples, double length, double search_px) {
   constexpr double kBin_px = 0.5;  // votes go to three bins: about twice the inliers' limit
-  const int bins = 2 * static_cast<int>(std::ceil(search_px / kBin_px)) + 1;
+  const int middle = static_cast<int>(std::ceil(search_px / kBin_px));  // the bin of no shift
+  const int bins = 2 * middle + 1;
   Fit best;
   double best_score = -1;
   std::vector<double> votes;
@@ -155,7 +156,7 @@ Fit vote(const std::vector<Sample>& samples, double length, double search_px) {
     for (const Sample& sample : samples)
       for (int c = 0; c < sample.candidates; ++c) {
         const double shift = sample.offset[static_cast<std::size_t>(c)] - tilt * (sample.s / length - 0.5);
-        const double place = shift / kBin_px + bins / 2 + 0.5;
+        const double place = shift / kBin_px + middle + 0.5;
         if (place < 0 || place >= bins) continue;
         const int bin = static_cast<int>(place);
         const auto k = static_cast<std::size_t>(bin);
@@ -164,7 +165,7 @@ Fit vote(const std::vector<Sample>& samples, double length, double search_px) {
         votes[k + 2] += 0.5;
       }
     for (int bin = 0; bin < bins; ++bin) {
-      const double shift = kBin_px * (bin - bins / 2);
+      const double shift = kBin_px * (bin - middle);
       const double score = votes[static_cast<std::size_t>(bin) + 1] *
                            (1.0 - 0.25 * (std::abs(shift) + 0.5 * std::abs(tilt)) / (search_px + 0.5 * kMaxTilt_px));
       if (score > best_score) {

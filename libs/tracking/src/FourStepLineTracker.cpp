@@ -57,16 +57,16 @@ std::vector<std::optional<ImageLine>> FourStepLineTracker::predict(const ImagePy
   return lines;
 }
 
-std::vector<FourStepLineTracker::Place> FourStepLineTracker::describe(const ImagePyramid& pyramid,
-                                                                      std::vector<ImageLine> detected,
-                                                                      std::vector<std::optional<ImageLine>> predicted,
-                                                                      std::vector<std::optional<Place>>& places) const {
+std::vector<FourStepLineTracker::Place> FourStepLineTracker::describe(
+    const ImagePyramid& pyramid, const std::vector<ImageLine>& detected,
+    const std::vector<std::optional<ImageLine>>& predicted, std::vector<std::optional<Place>>& places) const {
   std::vector<ImageLine> all = detected;
   for (const auto& line : predicted)
     if (line) all.push_back(*line);
   const cv::Mat descriptors = matcher_.describe(pyramid.image(), all);
   int row = 0;
   std::vector<Place> described;
+  described.reserve(detected.size());
   for (const ImageLine& line : detected) described.push_back({line, descriptors.row(row++)});
   for (std::size_t i = 0; i < predicted.size(); ++i)
     if (predicted[i]) places[i] = Place{*predicted[i], descriptors.row(row++)};

@@ -47,8 +47,8 @@ class FourStepLineTracker : public LineTracker {
   std::vector<std::optional<ImageLine>> predict(const ImagePyramid& pyramid, const GyroPrediction& gyro,
                                                 const PointMotion& points, LineStatistics& statistics) const;
   /// Descriptors of lines and places of the tracks that are predicted.
-  std::vector<Place> describe(const ImagePyramid& pyramid, std::vector<ImageLine> detected,
-                              std::vector<std::optional<ImageLine>> predicted,
+  std::vector<Place> describe(const ImagePyramid& pyramid, const std::vector<ImageLine>& detected,
+                              const std::vector<std::optional<ImageLine>>& predicted,
                               std::vector<std::optional<Place>>& places) const;
   std::vector<std::optional<std::size_t>> match(const std::vector<Place>& detected, const GyroPrediction& gyro) const;
   double score(const Track& track, const Place& place) const;

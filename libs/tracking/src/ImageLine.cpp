@@ -171,7 +171,7 @@ std::optional<RobustLine> fitRobustLine(const std::vector<Eigen::Vector2d>& poin
     best.inlier.assign(points.size(), 0);
     best.inliers = 0;
     for (std::size_t i = 0; i < points.size(); ++i) {
-      best.inlier[i] = std::abs(n.dot(points[i] - best.line.start)) < tolerance_px;
+      best.inlier[i] = std::abs(n.dot(points[i] - best.line.start)) < tolerance_px ? 1 : 0;
       best.inliers += best.inlier[i];
     }
     if (best.inliers < 3 || 2 * best.inliers < static_cast<int>(points.size())) return std::nullopt;

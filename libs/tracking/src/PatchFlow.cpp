@@ -93,7 +93,7 @@ class Template {
     for (int y = 0; y < window_px_ + 2; ++y, row += step) {
       short* out = grey_.data() + y * stride_;
       for (int x = 0; x < columns_; x += kLanes) cv::v_store(out + x, weights.interpolate(row + x, step));
-      const int last = stride_ - kLanes;  // the two columns that are left, some others again
+      const std::ptrdiff_t last = stride_ - kLanes;  // the two columns that are left, some others again
       cv::v_store(out + last, weights.interpolate(row + last, step));
     }
     const auto first_x = std::max(0, 1 - corner.x), end_x = std::min(window_px_, image.cols - 2 - corner.x);
@@ -166,7 +166,8 @@ class Template {
     yy = cv::v_reduce_sum(sum_yy) / kScale;
   }
 
-  int window_px_, columns_, stride_;
+  int window_px_, columns_;
+  std::ptrdiff_t stride_;       ///< numbers in a row of `grey_`
   std::vector<short> grey_;     ///< with a ring of one pixel around the patch, as gradients need it
   std::vector<short> gx_, gy_;  ///< `columns_` a row
   std::vector<short> mask_;     ///< of a row: 0 beyond window or image, else -1 as differences are left less right

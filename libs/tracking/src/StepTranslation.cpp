@@ -96,6 +96,7 @@ void StepTranslation::update(const std::vector<Pair>& pairs, const Eigen::Quater
                              const std::optional<Eigen::Vector3d>& direction_c1) {
   const std::vector<Ray> rays = raysOf(pairs, R_c1_c0);
   std::vector<double> moved;
+  moved.reserve(rays.size());
   for (const Ray& ray : rays) moved.push_back(ray.motion.norm());
   if (!direction_c1 || rays.size() < kMinPoints) {
     points_.clear();

@@ -147,7 +147,7 @@ TwoViewMotion twoViewMotion(const std::vector<TwoViewPair>& pairs, const Eigen::
   motion.inliers = 0;
   for (std::size_t i = 0; i < rays.size(); ++i) {
     const Rays turned{turnedRay(dR * rays[i].f0, params.wide), rays[i].f1};
-    motion.inlier[i] = std::abs(epipolarDistance(turned, motion.direction, params.wide)) < threshold;
+    motion.inlier[i] = std::abs(epipolarDistance(turned, motion.direction, params.wide)) < threshold ? 1 : 0;
     motion.inliers += motion.inlier[i];
   }
   return motion;
