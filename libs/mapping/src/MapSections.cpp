@@ -13,7 +13,7 @@ namespace {
 constexpr std::size_t kKeyframeBytes = 8 + 8 + 7 * 8 + 9 * 8, kPointObservationBytes = 8 + 2 * 8,
                       kPointBytes = 8 + 3 * 8 + 8 + 16 + 8, kLineObservationBytes = 8 + 4 * 8,
                       kLineBytes = 8 + 6 * 8 + 16 + 16 + 1 + 4 + 8, kTrajectoryBytes = 8 + 7 * 8,
-                      kGroupBytes = 8 + 3 * 8 + 8, kCovarianceBytes = 10 * 4,
+                      kGroupBytes = 8 + 3 * 8 + 8, kCovarianceBytes = std::size_t{10} * 4,
                       kErrorsBytes = std::size_t{6} * kErrorDraws * 4, kCornerBytes = 3 * 8 + 8 + 8,
                       kPlaneBytes = 8 + 3 * 8 + 2 * 8 + 2 * 8;
 
