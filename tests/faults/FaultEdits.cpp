@@ -109,8 +109,11 @@ std::string replaced(std::string text, const std::string& from, const std::strin
 
 std::string withNoise(std::string text, unsigned seed, std::size_t count, std::size_t from) {
   std::mt19937 random(seed);
-  for (std::size_t i = 0; i < count && from < text.size(); ++i)
-    text[from + random() % (text.size() - from)] ^= static_cast<char>(1 + random() % 255);
+  for (std::size_t i = 0; i < count && from < text.size(); ++i) {
+    const auto mask = static_cast<char>(1 + random() % 255);
+    char& byte = text[from + random() % (text.size() - from)];
+    byte = static_cast<char>(byte ^ mask);
+  }
   return text;
 }
 

@@ -78,7 +78,8 @@ std::string kindTable(const std::vector<FaultRow>& rows) {
     if (of_kind[row.kind].empty()) kinds.push_back(row.kind);
     of_kind[row.kind].push_back(&row);
   }
-  std::string text = "| kind | in | faults | what happens | message, for example |\n|---|---|---|---|---|\n";
+  std::ostringstream text;
+  text << "| kind | in | faults | what happens | message, for example |\n|---|---|---|---|---|\n";
   for (const std::string& kind : kinds) {
     std::set<std::string> forms;
     std::map<std::string, int> outcomes;
@@ -93,10 +94,10 @@ std::string kindTable(const std::vector<FaultRow>& rows) {
     for (const auto& [outcome, count] : outcomes)
       happens +=
           (happens.empty() ? "" : "; ") + outcome + (outcomes.size() > 1 ? " (" + std::to_string(count) + ")" : "");
-    text += "| " + kind + " | " + in + " | " + std::to_string(of_kind[kind].size()) + " | " + happens + " | " +
-            (example.empty() ? "" : "`" + cell(example) + "`") + " |\n";
+    text << "| " << kind << " | " << in << " | " << of_kind[kind].size() << " | " << happens << " | "
+         << (example.empty() ? "" : "`" + cell(example) + "`") << " |\n";
   }
-  return text;
+  return text.str();
 }
 
 }  // namespace lintel::test

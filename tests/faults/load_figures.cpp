@@ -60,7 +60,7 @@ double medianMs(const OdometryStatistics& s, std::size_t from, std::size_t to) {
   std::vector<double> ms;
   for (std::size_t i = from; i < to; ++i) ms.push_back(s.decoding.ms()[i] + s.tracking.ms()[i] + s.estimation.ms()[i]);
   if (ms.empty()) return 0;
-  std::nth_element(ms.begin(), ms.begin() + ms.size() / 2, ms.end());
+  std::nth_element(ms.begin(), ms.begin() + static_cast<std::ptrdiff_t>(ms.size() / 2), ms.end());
   return ms[ms.size() / 2];
 }
 

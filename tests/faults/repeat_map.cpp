@@ -31,7 +31,8 @@ class Places {
 
   std::size_t count() const { return count_; }
   Eigen::Vector3d shift(std::size_t i) const {
-    return step_m_ * Eigen::Vector3d(static_cast<double>(i % columns_), static_cast<double>(i / columns_), 0);
+    const std::size_t column = i % columns_, row = i / columns_;
+    return step_m_ * Eigen::Vector3d(static_cast<double>(column), static_cast<double>(row), 0);
   }
 
  private:

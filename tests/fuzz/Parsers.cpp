@@ -35,7 +35,7 @@ const TempFolder& workFolder() {
 }
 
 std::string fileWith(const std::string& name, const std::string& bytes) {
-  const std::string path = workFolder() / name;
+  std::string path = workFolder() / name;
   writeText(path, bytes);
   return path;
 }

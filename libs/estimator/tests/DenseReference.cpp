@@ -59,6 +59,7 @@ LinearFactor lineariseFactor(SlidingWindow& window, const Factor& factor, double
     blocks.push_back(window.block(factor.blocks[i]));
     ambient.emplace_back(rows, cost.parameter_block_sizes()[i]);
   }
+  pointers.reserve(ambient.size());
   for (RowMajorMatrix& m : ambient) pointers.push_back(m.data());
   LinearFactor result;
   result.residual.resize(rows);

@@ -63,7 +63,7 @@ ImuSimulatorParams perfectImu() {
   return imu;
 }
 
-TrackedFlight fly(const ImuSimulatorParams& imu, TrackSimulationParams tracks, const Trajectory& trajectory,
+TrackedFlight fly(const ImuSimulatorParams& imu, const TrackSimulationParams& tracks, const Trajectory& trajectory,
                   const Rig& rig) {
   TrackedFlight flight;
   flight.rig = rig;

@@ -53,7 +53,7 @@ struct TrackedFlight {
 ImuSimulatorParams perfectImu();
 
 /// What every test flies unless it says otherwise: 10 s, no noise on the tracks.
-TrackedFlight fly(const ImuSimulatorParams& imu, TrackSimulationParams tracks = {},
+TrackedFlight fly(const ImuSimulatorParams& imu, const TrackSimulationParams& tracks = {},
                   const Trajectory& trajectory = FigureTrajectory(), const Rig& rig = eurocRig());
 
 /// `count` window frames, every `step`th frame of the flight from `first` on, pre-integrated with zero biases; no

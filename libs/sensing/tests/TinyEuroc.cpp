@@ -46,7 +46,7 @@ void writeCamera(const TinyEuroc& recording, const fs::path& folder, int camera)
   std::string csv = "#timestamp [ns],filename\n";
   for (int i = 0; i < recording.frames; ++i) {
     const std::string stamp = std::to_string(TinyEuroc::frameStamp(i));
-    csv += stamp + "," + stamp + ".png\r\n";
+    csv.append(stamp).append(",").append(stamp).append(".png\r\n");
     cv::imwrite((folder / "data" / (stamp + ".png")).string(), picture(i, camera));
   }
   writeText((folder / "data.csv").string(), csv);
