@@ -78,7 +78,6 @@ Eigen::Vector2d Camera::undistort(const Eigen::Vector2d& wanted, const Eigen::Ve
   for (int i = 0; i < 40; ++i) {
     const Radial radial(*this, n.squaredNorm());
     const Eigen::Vector2d error = distorted(*this, n, radial) - wanted;
-    if (error.squaredNorm() < 1e-24) break;
     const Eigen::Matrix2d J = jacobianAt(*this, n, radial);
     if (!grows(J)) {  // a step too far
       n = 0.5 * (n + invertible);
@@ -86,6 +85,7 @@ Eigen::Vector2d Camera::undistort(const Eigen::Vector2d& wanted, const Eigen::Ve
     }
     invertible = n;
     n -= J.inverse() * error;
+    if (error.squaredNorm() < 1e-16) break;  // the next one would be its square
   }
   return n;
 }

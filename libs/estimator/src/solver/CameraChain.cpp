@@ -16,7 +16,7 @@ CameraBlock cameraBlock(const CameraEquations& cameras, Eigen::Index row, Eigen:
 
 /// Adds a block to the lower triangle, wherever it lies; nothing where a state is a constant.
 template <class Matrix>
-void put(const Matrix& block, Eigen::Index row, Eigen::Index column, Eigen::MatrixXd& H) {
+void put(const Eigen::MatrixBase<Matrix>& block, Eigen::Index row, Eigen::Index column, Eigen::MatrixXd& H) {
   if (row < 0 || column < 0) return;
   if (row >= column)
     H.block<Matrix::RowsAtCompileTime, Matrix::ColsAtCompileTime>(row, column, block.rows(), block.cols()) += block;
@@ -30,15 +30,24 @@ void put(const Matrix& block, Eigen::Index row, Eigen::Index column, Eigen::Matr
 CameraChain::CameraChain(const CameraLayout& layout, const std::vector<CameraView>& views, const StatePlaces& places)
     : layout_(layout), views_(views), poses_(places.poses) {
   for (const CameraView& view : views) shared_.emplace_back() << view.d_extrinsics, view.d_offset;
-  if (places.extrinsics >= 0) tail_.push_back({0, kPoseTangent, places.extrinsics});
+  if (places.extrinsics >= 0) addPiece({0, kPoseTangent, places.extrinsics});
   if (places.correction >= 0) {
-    tail_.push_back({kPoseTangent, 1, places.correction + kTimeOffsetAt});
-    tail_.push_back({kShared, kSightingCorrection, places.correction});
+    addPiece({kPoseTangent, 1, places.correction + kTimeOffsetAt});
+    addPiece({kShared, kSightingCorrection, places.correction});
   }
   for (std::size_t i = 0; i < places.kept.size(); ++i) {
-    const Eigen::Index at = layout.kept_offsets[i], size = layout.kept_offsets[i + 1] - at;
-    if (places.kept[i] >= 0) tail_.push_back({kShared + kSightingCorrection + at, size, places.kept[i]});
+    const Eigen::Index from = layout.kept_offsets[i], size = layout.kept_offsets[i + 1] - from;
+    if (places.kept[i] >= 0) addPiece({kShared + kSightingCorrection + from, size, places.kept[i]});
   }
+}
+
+/// Joined with the one before where it goes on with it on both sides: fewer and larger blocks.
+void CameraChain::addPiece(const Piece& piece) {
+  if (!tail_.empty() && tail_.back().at + tail_.back().size == piece.at &&
+      tail_.back().state + tail_.back().size == piece.state)
+    tail_.back().size += piece.size;
+  else
+    tail_.push_back(piece);
 }
 
 void CameraChain::add(const CameraEquations& cameras, Eigen::MatrixXd& H, Eigen::VectorXd& b) const {
@@ -59,7 +68,8 @@ void CameraChain::addPoses(const CameraEquations& cameras, Eigen::MatrixXd& H) c
 
 void CameraChain::addTail(const CameraEquations& cameras, Eigen::MatrixXd& H) const {
   const Eigen::Index rest = layout_.correction(), n = layout_.size() - rest;
-  Eigen::MatrixXd square = Eigen::MatrixXd::Zero(tailSize(), tailSize()), by_pose(tailSize(), kPoseTangent);
+  Eigen::MatrixXd square = Eigen::MatrixXd::Zero(tailSize(), tailSize());
+  Eigen::Matrix<double, Eigen::Dynamic, kPoseTangent> by_pose(tailSize(), kPoseTangent);
   square.bottomRightCorner(n, n) = cameras.H.bottomRightCorner(n, n);
   for (int k = 0; k < layout_.cameras; ++k) {
     const auto place = static_cast<std::size_t>(k);
@@ -70,16 +80,13 @@ void CameraChain::addTail(const CameraEquations& cameras, Eigen::MatrixXd& H) co
     const auto below = cameras.H.block(rest, layout_.camera(k), n, kCameraTangent);
     by_pose.topRows<kShared>() = seen.transpose() * views_[place].d_pose;
     by_pose.bottomRows(n) = below.lazyProduct(views_[place].d_pose);
-    for (const Piece& piece : tail_)
-      put(Eigen::Matrix<double, Eigen::Dynamic, kPoseTangent>(by_pose.middleRows(piece.at, piece.size)), piece.state,
-          poses_[place], H);
+    for (const Piece& piece : tail_) put(by_pose.middleRows(piece.at, piece.size), piece.state, poses_[place], H);
     square.topLeftCorner<kShared, kShared>() += shared_[place].transpose() * seen;
     square.bottomLeftCorner(n, static_cast<Eigen::Index>(kShared)) += below.lazyProduct(shared_[place]);
   }
   for (const Piece& row : tail_)
     for (const Piece& column : tail_)
-      if (row.at >= column.at)
-        put(Eigen::MatrixXd(square.block(row.at, column.at, row.size, column.size)), row.state, column.state, H);
+      if (row.at >= column.at) put(square.block(row.at, column.at, row.size, column.size), row.state, column.state, H);
 }
 
 void CameraChain::addGradient(const Eigen::VectorXd& b_cameras, Eigen::VectorXd& b) const {

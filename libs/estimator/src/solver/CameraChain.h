@@ -40,6 +40,7 @@ class CameraChain {
     Eigen::Index at, size, state;
   };
 
+  void addPiece(const Piece& piece);
   void addPoses(const CameraEquations& cameras, Eigen::MatrixXd& H) const;
   void addTail(const CameraEquations& cameras, Eigen::MatrixXd& H) const;
   Eigen::Index tailSize() const { return kShared + layout_.size() - layout_.correction(); }

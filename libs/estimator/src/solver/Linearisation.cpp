@@ -125,15 +125,15 @@ ReducedSystem::Placement ReducedSystem::placementOf(const Factor& factor) const 
 }
 
 void ReducedSystem::addInformation(const Placement& place, const Eigen::MatrixXd& H, const Eigen::VectorXd& b) {
-  for (std::size_t i = 0; i < place.to.size(); ++i) {
-    const Eigen::Index rows = place.from[i + 1] - place.from[i];
-    if (place.to[i] < 0) continue;
-    states_.b.segment(place.to[i], rows) += b.segment(place.from[i], rows);
-    for (std::size_t j = 0; j < place.to.size(); ++j)
-      if (const Eigen::Index columns = place.from[j + 1] - place.from[j];
-          place.to[j] >= 0 && place.to[j] <= place.to[i])
-        states_.H.block(place.to[i], place.to[j], rows, columns) +=
-            H.block(place.from[i], place.from[j], rows, columns);
+  std::vector<RowRun> runs;  // blocks that follow each other on both sides at a time
+  for (std::size_t i = 0; i < place.to.size(); ++i)
+    if (place.to[i] >= 0) append({place.from[i], place.to[i], place.from[i + 1] - place.from[i]}, runs);
+  for (const RowRun& row : runs) {
+    states_.b.segment(row.to, row.size) += b.segment(row.from, row.size);
+    for (const RowRun& column : runs)
+      if (column.to <= row.to)
+        states_.H.block(row.to, column.to, row.size, column.size) +=
+            H.block(row.from, column.from, row.size, column.size);
   }
 }
 
