@@ -2,6 +2,7 @@
 #include "PointErrors.h"
 
 #include <algorithm>
+#include <cmath>
 #include <cstdio>
 
 #include "lintel/core/Quantiles.h"
@@ -75,9 +76,27 @@ void PointErrors::printLengths(std::size_t from, std::size_t to) const {
       correlated / std::max(power, 1e-9));
 }
 
+/// The standard deviation in one coordinate, by their median, of the differences of residuals of a track so many images
+/// apart: white noise is the same at any distance, a walk grows with it.
+void PointErrors::printLags() const {
+  constexpr std::size_t kShortest = 20;
+  std::map<std::size_t, std::vector<double>> squares;
+  for (const auto& [id, track] : tracks_) {
+    if (track.size() < kShortest) continue;
+    const auto r = residualsOf(track);
+    for (const std::size_t lag : {1, 2, 4, 8, 16, 32, 64})
+      for (std::size_t i = lag; i < r.size(); ++i) squares[lag].push_back((r[i] - r[i - lag]).squaredNorm());
+  }
+  std::printf("points, difference of the errors in images");
+  for (auto& [lag, values] : squares)
+    std::printf("  %zu apart %.3f px", lag, std::sqrt(upperMedian(values) / (2 * std::log(2.0))));
+  std::printf("\n");
+}
+
 void PointErrors::print() const {
   constexpr std::size_t kLengths[] = {10, 20, 40, 80, 160, 100000};
   for (std::size_t k = 0; k + 1 < std::size(kLengths); ++k) printLengths(kLengths[k], kLengths[k + 1]);
+  printLags();
 }
 
 }  // namespace lintel::truth

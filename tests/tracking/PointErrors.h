@@ -20,7 +20,7 @@ class PointErrors {
 
   void add(const FrameTracks& tracks);
 
-  /// A line for each class of track lengths.
+  /// A line for each class of track lengths, and one of how the errors of a track change with time.
   void print() const;
 
  private:
@@ -31,6 +31,7 @@ class PointErrors {
   using Track = std::vector<Sighting>;
 
   std::vector<Eigen::Vector2d> residualsOf(const Track& track) const;
+  void printLags() const;
   void printLengths(std::size_t from, std::size_t to) const;
 
   const TruePoses& poses_;

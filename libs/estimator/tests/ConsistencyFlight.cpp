@@ -189,8 +189,9 @@ class LandmarkComparison {
 
 EstimatorParams paramsOf(const ConsistencySetting& setting) {
   EstimatorParams params;
-  params.factors.point_sigma_px = kPixelSigma;
-  params.factors.line_sigma_px = 1;  // of what the observations say of themselves
+  params.factors.point_sigma_px = params.factors.point_noise_px = kPixelSigma;
+  params.factors.line_sigma_px = params.factors.line_noise_px = 1;  // of what the observations say of themselves
+  params.factors.point_walk_px = params.factors.line_walk_px = 0;
   if (setting.plain)
     params.factors.point_loss_width = params.factors.line_loss_width = params.factors.track_freedom =
         params.calibration.loss_width = 1e6;

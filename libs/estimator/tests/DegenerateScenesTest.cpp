@@ -91,7 +91,7 @@ TrackedFlight straightFlight(const std::vector<Segment3>& lines_w, std::uint64_t
 }
 
 FlownLines flown(const TrackedFlight& flight, const std::string& degenerate_lines) {
-  EstimatorParams params;
+  EstimatorParams params = forWhiteNoise();
   params.degeneracy.lines = degenerate_lines;
   params.calibration.refine_camera = params.calibration.refine_extrinsics = params.calibration.refine_readout =
       params.calibration.refine_time_offset = false;

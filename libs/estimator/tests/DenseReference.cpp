@@ -13,43 +13,21 @@ namespace lintel::test {
 
 namespace {
 
-/// Residuals and tangent Jacobians of one factor, weighted by its loss (the first-order part of Triggs' correction).
+/// Residuals of one factor and their Jacobian with respect to all states of the equations, without its loss.
 struct LinearFactor {
   Eigen::VectorXd residual;
-  std::vector<Eigen::MatrixXd> jacobians;
+  Eigen::MatrixXd jacobian;
 };
 
-double robustSquare(const Factor& factor, double squared) {
-  if (!factor.loss) return squared;
-  double rho[3];
-  factor.loss->Evaluate(squared, rho);
-  return rho[0];
+double lossWeight(const ceres::LossFunction* loss, double squared, double& robust_square) {
+  double rho[3] = {squared, 1, 0};
+  if (loss) loss->Evaluate(squared, rho);
+  robust_square = rho[0];
+  return rho[1];
 }
 
-/// Weights of tracks by their landmarks: of Student's t distribution, (freedom + n) / (freedom + sum of squares), n the
-/// number of residuals less the dimensions of the landmark.
-std::map<BlockKey, double> trackWeights(SlidingWindow& window, const std::vector<Factor>& factors) {
-  std::map<BlockKey, double> squares, count, weights;
-  for (const Factor& factor : factors) {
-    if (std::isinf(factor.track_freedom)) continue;
-    std::vector<const double*> blocks;
-    for (const BlockKey& key : factor.blocks) blocks.push_back(window.block(key));
-    Eigen::VectorXd r(factor.cost->num_residuals());
-    factor.cost->Evaluate(blocks.data(), r.data(), nullptr);
-    const BlockKey& landmark = factor.blocks.back();
-    squares[landmark] += robustSquare(factor, r.squaredNorm());
-    count[landmark] += static_cast<double>(r.size());
-  }
-  for (const Factor& factor : factors) {
-    if (std::isinf(factor.track_freedom)) continue;
-    const BlockKey& landmark = factor.blocks.back();
-    const double n = count[landmark] - manifoldOf(landmark.kind)->TangentSize();
-    weights[landmark] = (factor.track_freedom + n) / (factor.track_freedom + squares[landmark]);
-  }
-  return weights;
-}
-
-LinearFactor lineariseFactor(SlidingWindow& window, const Factor& factor, double track_weight) {
+LinearFactor lineariseFactor(SlidingWindow& window, const Factor& factor,
+                             const std::map<BlockKey, Eigen::Index>& offset, Eigen::Index size) {
   const ceres::CostFunction& cost = *factor.cost;
   const int rows = cost.num_residuals();
   std::vector<const double*> blocks;
@@ -61,24 +39,54 @@ LinearFactor lineariseFactor(SlidingWindow& window, const Factor& factor, double
   }
   pointers.reserve(ambient.size());
   for (RowMajorMatrix& m : ambient) pointers.push_back(m.data());
-  LinearFactor result;
-  result.residual.resize(rows);
+  LinearFactor result{Eigen::VectorXd(rows), Eigen::MatrixXd::Zero(rows, size)};
   cost.Evaluate(blocks.data(), result.residual.data(), pointers.data());
-  double weight = 1;
-  if (factor.loss) {
-    double rho[3];
-    factor.loss->Evaluate(result.residual.squaredNorm(), rho);
-    weight = std::sqrt(rho[1]);
-  }
-  weight *= std::sqrt(track_weight);
-  result.residual *= weight;
   for (std::size_t i = 0; i < blocks.size(); ++i) {
     const auto manifold = manifoldOf(factor.blocks[i].kind);
     RowMajorMatrix plus(manifold->AmbientSize(), manifold->TangentSize());
     manifold->PlusJacobian(blocks[i], plus.data());
-    result.jacobians.push_back(weight * ambient[i] * plus);
+    result.jacobian.middleCols(offset.at(factor.blocks[i]), manifold->TangentSize()) += ambient[i] * plus;
   }
   return result;
+}
+
+/// Of all factors of a track, one below the other: made independent by the Cholesky factor of their covariance as
+/// TrackNoise's comment says, then with the loss of each sighting and of all of them, Student's t distribution with
+/// weights (freedom + n) / (freedom + sum of squares), n the number of residuals less the dimensions of the landmark.
+void addTrack(const SlidingWindow& window, const std::vector<const Factor*>& factors,
+              const std::vector<LinearFactor>& sightings, NormalEquations& eq) {
+  const auto count = static_cast<Eigen::Index>(factors.size()), rows = sightings.front().residual.size();
+  const TrackNoise& noise = factors.front()->noise;
+  const auto time = [&](Eigen::Index i) {
+    return 1e-9 * static_cast<double>(window.frame(factors[static_cast<std::size_t>(i)]->blocks.front().id).t_ns);
+  };
+  Eigen::MatrixXd covariance(count * rows, count * rows), J(count * rows, eq.H.cols());
+  Eigen::VectorXd r(count * rows);
+  for (Eigen::Index i = 0; i < count; ++i) {
+    r.segment(rows * i, rows) = sightings[static_cast<std::size_t>(i)].residual;
+    J.middleRows(rows * i, rows) = sightings[static_cast<std::size_t>(i)].jacobian;
+    for (Eigen::Index j = 0; j < count; ++j)
+      covariance.block(rows * i, rows * j, rows, rows) =
+          Eigen::MatrixXd::Identity(rows, rows) *
+          ((i == j ? noise.white * noise.white : 0) +
+           noise.walk * noise.walk * std::min(time(i) - time(0), time(j) - time(0)));
+  }
+  const Eigen::LLT<Eigen::MatrixXd> llt(covariance);
+  llt.matrixL().solveInPlace(r);
+  llt.matrixL().solveInPlace(J);
+  double squares = 0, square;
+  Eigen::VectorXd weights(r.size());
+  for (Eigen::Index i = 0; i < count; ++i) {
+    weights.segment(rows * i, rows)
+        .setConstant(lossWeight(factors.front()->loss, r.segment(rows * i, rows).squaredNorm(), square));
+    squares += square;
+  }
+  if (!std::isinf(noise.freedom)) {
+    const double n = static_cast<double>(r.size()) - manifoldOf(factors.front()->blocks.back().kind)->TangentSize();
+    weights *= (noise.freedom + n) / (noise.freedom + squares);
+  }
+  eq.H += J.transpose() * weights.asDiagonal() * J;
+  eq.b += J.transpose() * weights.asDiagonal() * r;
 }
 
 }  // namespace
@@ -108,19 +116,23 @@ NormalEquations linearise(SlidingWindow& window, const std::vector<Factor>& fact
   eq.offsets.push_back(size);
   eq.H = Eigen::MatrixXd::Zero(size, size);
   eq.b = Eigen::VectorXd::Zero(size);
-  const std::map<BlockKey, double> weights = trackWeights(window, factors);
+  std::map<BlockKey, std::vector<const Factor*>> tracks;
   for (const Factor& factor : factors) {
-    const auto weight = std::isinf(factor.track_freedom) ? weights.end() : weights.find(factor.blocks.back());
-    const LinearFactor f = lineariseFactor(window, factor, weight == weights.end() ? 1 : weight->second);
-    for (std::size_t i = 0; i < factor.blocks.size(); ++i) {
-      const Eigen::MatrixXd& Ji = f.jacobians[i];
-      const Eigen::Index row = offset.at(factor.blocks[i]);
-      eq.b.segment(row, Ji.cols()) += Ji.transpose() * f.residual;
-      for (std::size_t j = 0; j < factor.blocks.size(); ++j) {
-        const Eigen::MatrixXd& Jj = f.jacobians[j];
-        eq.H.block(row, offset.at(factor.blocks[j]), Ji.cols(), Jj.cols()).noalias() += Ji.transpose() * Jj;
-      }
+    if (isImageFactor(factor) && isLandmark(factor.blocks.back())) {
+      tracks[factor.blocks.back()].push_back(&factor);
+      continue;
     }
+    const LinearFactor f = lineariseFactor(window, factor, offset, size);
+    double square;
+    const double weight = lossWeight(factor.loss, f.residual.squaredNorm(), square);
+    eq.H += weight * f.jacobian.transpose() * f.jacobian;
+    eq.b += weight * f.jacobian.transpose() * f.residual;
+  }
+  for (const auto& [landmark, sighted] : tracks) {
+    std::vector<LinearFactor> sightings;
+    sightings.reserve(sighted.size());
+    for (const Factor* factor : sighted) sightings.push_back(lineariseFactor(window, *factor, offset, size));
+    addTrack(window, sighted, sightings, eq);
   }
   return eq;
 }

@@ -16,9 +16,18 @@ namespace lintel::test {
 
 inline const EstimatorParams kParams;  ///< the defaults
 
+/// The defaults, but for tracks with white noise, as they are simulated.
+inline EstimatorParams forWhiteNoise() {
+  EstimatorParams params;
+  params.factors.point_noise_px = params.factors.point_sigma_px;
+  params.factors.line_noise_px = params.factors.line_sigma_px;
+  params.factors.point_walk_px = params.factors.line_walk_px = 0;
+  return params;
+}
+
 /// The defaults, but the residuals of a track are independent of each other: what Ceres can minimise.
 inline FactorParams withoutTrackLoss() {
-  FactorParams params;
+  FactorParams params = forWhiteNoise().factors;
   params.track_freedom = std::numeric_limits<double>::infinity();
   return params;
 }

@@ -44,7 +44,8 @@ double longestParallaxPx(const SlidingWindow& window) {
 
 /// The calibration is held: its errors are in the images' residuals, and common to all tracks.
 EstimatorParams Initializer::paramsAtStart(EstimatorParams params) {
-  params.factors.point_sigma_px = params.initializer.point_sigma_px;
+  params.factors.point_sigma_px = params.factors.point_noise_px = params.initializer.point_sigma_px;
+  params.factors.point_walk_px = 0;
   params.factors.track_freedom = std::numeric_limits<double>::infinity();
   return params;
 }

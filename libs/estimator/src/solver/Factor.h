@@ -4,7 +4,6 @@
 #include <ceres/cost_function.h>
 #include <ceres/loss_function.h>
 
-#include <limits>
 #include <memory>
 #include <type_traits>
 #include <vector>
@@ -12,6 +11,7 @@
 #include "lintel/estimator/SlidingWindow.h"
 #include "lintel/factors/ImageFactor.h"
 #include "lintel/factors/Manifolds.h"
+#include "lintel/factors/TrackNoise.h"
 
 namespace lintel {
 
@@ -20,8 +20,7 @@ struct Factor {
   const ceres::CostFunction* cost = nullptr;
   const ceres::LossFunction* loss = nullptr;
   std::vector<BlockKey> blocks;
-  /// Of an image's residuals with a point or a line: their TrackLoss (the same in all of a track); infinite: none.
-  double track_freedom = std::numeric_limits<double>::infinity();
+  TrackNoise noise = {};  ///< of an image's residuals with a point or a line; the same in all of a track
 };
 
 /// The manifold of a kind of block; shared, stateless.

@@ -2,11 +2,11 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <limits>
 #include <vector>
 
 #include "lintel/factors/ImageFactor.h"
 #include "lintel/factors/TrackLoss.h"
+#include "lintel/factors/TrackNoise.h"
 #include "solver/CameraEquations.h"
 #include "solver/Factor.h"
 #include "solver/PanelSquare.h"
@@ -14,6 +14,10 @@
 namespace lintel {
 
 /// A point or a line that is eliminated: its residuals, its part of the normal equations, and its last elimination.
+///
+/// The errors of its sightings are correlated (TrackNoise). With r the residuals of all, whitened ones are L^-1 r; the
+/// loss counts for each of these, the track's for their sum. In the normal equations sightings i and j then meet with
+/// the weight in row i and column j of the information L^-T diag(weights) L^-1.
 template <class Target>
 struct LandmarkBlock {
   static constexpr int T = Target::kTangent, kSize = Target::kSize;
@@ -21,22 +25,32 @@ struct LandmarkBlock {
   struct Sighting {
     const ImageFactor<Target>* factor = nullptr;
     int camera = 0;
+    double t_s = 0;
     ImageLinearisation<Target> linearised;
-    double weight = 1;  ///< by the loss
   };
 
+  static constexpr int R = Target::kRows;
+  /// What a sighting's residuals depend on besides the camera, the landmark and the correction, and the residuals.
+  using SightingRows = Eigen::Matrix<double, R, T + kSightingCorrection + 1, Eigen::RowMajor>;
+
   double* block = nullptr;
-  const ceres::LossFunction* loss = nullptr;                      ///< of a sighting
-  TrackLoss track_loss{std::numeric_limits<double>::infinity()};  ///< of all sightings together
-  std::vector<Sighting> sightings;
-  const Factor* tie = nullptr;  ///< ties a line to a direction
-  int direction = -1;           ///< its place among the kept targets
+  const ceres::LossFunction* loss = nullptr;  ///< of a sighting
+  TrackNoise noise;
+  std::vector<Sighting> sightings;  ///< the earliest first
+  const Factor* tie = nullptr;      ///< ties a line to a direction
+  int direction = -1;               ///< its place among the kept targets
 
   Eigen::Matrix<double, T, T> H, inverse_root;
   Eigen::Matrix<double, T, 1> b, step;
   Eigen::Matrix<double, Eigen::Dynamic, T> W, Y;  ///< the landmark's columns of H, in the rows of its cameras, of the
                                                   ///< correction and of its direction; the same times inverse_root
   std::vector<RowRun> runs;                       ///< where these rows lie in CameraEquations
+  Eigen::MatrixXd whitening;                      ///< L^-1
+  Eigen::MatrixXd information;
+  std::vector<SightingRows> rows, weighted_rows;  ///< of all sightings; times `information`
+
+  /// What does not depend on the blocks' values, when all sightings and the tie are there.
+  void prepare(const CameraLayout& layout);
 
   /// The landmark's robust cost at the blocks' present values.
   double cost(const std::vector<CameraView>& views, const double* correction, const CameraLayout& layout) const;
@@ -53,15 +67,12 @@ struct LandmarkBlock {
 
  private:
   using PlusJacobian = Eigen::Matrix<double, kSize, T, Eigen::RowMajor>;
+  using Residuals = Eigen::Matrix<double, Eigen::Dynamic, R>;  ///< a row a sighting
 
-  /// The cost of sightings whose squared residuals, robust, have this sum, and the weight that their track has.
-  double trackCost(double squared, double& weight) const {
-    return track_loss.cost(squared, Target::kRows * static_cast<int>(sightings.size()), T, weight);
-  }
-  void placeRows(const CameraLayout& layout);
+  double trackCost(const Residuals& residuals, Eigen::VectorXd& weights) const;
+  void weighSightings(const Eigen::VectorXd& weights);
   Eigen::Index correctionRow() const { return kCameraTangent * static_cast<Eigen::Index>(sightings.size()); }
-  void addSighting(std::size_t i, double track_weight, const PlusJacobian& plus, const CameraLayout& layout,
-                   CameraEquations& eq);
+  void addSighting(std::size_t i, const CameraLayout& layout, CameraEquations& eq);
   double addTie(const CameraLayout& layout, CameraEquations& eq);
 };
 

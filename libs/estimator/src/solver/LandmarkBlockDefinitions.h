@@ -43,19 +43,34 @@ Eigen::Matrix<double, T, T> inverseRoot(Eigen::Matrix<double, T, T> H, double da
 
 }  // namespace landmark_block
 
+/// The weights are the derivatives of the cost by half the squares of whitened residuals.
+template <class Target>
+double LandmarkBlock<Target>::trackCost(const Residuals& residuals, Eigen::VectorXd& weights) const {
+  const Residuals whitened = whitening.template triangularView<Eigen::Lower>() * residuals;
+  weights.resize(whitened.rows());
+  double sum = 0, track_weight;
+  for (Eigen::Index i = 0; i < whitened.rows(); ++i) sum += robustCost(loss, whitened.row(i).squaredNorm(), weights[i]);
+  sum = TrackLoss(noise.freedom).cost(2 * sum, static_cast<int>(whitened.size()), T, track_weight);
+  weights *= track_weight;
+  return sum;
+}
+
 template <class Target>
 double LandmarkBlock<Target>::cost(const std::vector<CameraView>& views, const double* correction,
                                    const CameraLayout& layout) const {
-  double sum = 0, weight;
+  Residuals residuals(sightings.size(), +R);
   ImageLinearisation<Target> l;
-  for (const Sighting& s : sightings) {
+  for (std::size_t i = 0; i < sightings.size(); ++i) {
+    const Sighting& s = sightings[i];
     s.factor->linearise(views[static_cast<std::size_t>(s.camera)], correction, block, false, l);
-    sum += robustCost(loss, l.residual.squaredNorm(), weight);
+    residuals.row(static_cast<Eigen::Index>(i)) = l.residual;
   }
-  sum = trackCost(2 * sum, weight);
+  Eigen::VectorXd weights;
+  double sum = trackCost(residuals, weights);
   if (tie) {
     const double* blocks[] = {block, layout.block(direction)};
     Eigen::Vector3d r;
+    double weight;
     tie->cost->Evaluate(blocks, r.data(), nullptr);
     sum += robustCost(tie->loss, r.squaredNorm(), weight);
   }
@@ -63,16 +78,19 @@ double LandmarkBlock<Target>::cost(const std::vector<CameraView>& views, const d
 }
 
 template <class Target>
-void LandmarkBlock<Target>::placeRows(const CameraLayout& layout) {
-  Eigen::Index rows = 0;
+void LandmarkBlock<Target>::prepare(const CameraLayout& layout) {
+  Eigen::Index count = 0;
   const auto place = [&](Eigen::Index to, Eigen::Index size) {
-    append({rows, to, size}, runs);
-    rows += size;
+    append({count, to, size}, runs);
+    count += size;
   };
   for (const Sighting& s : sightings) place(layout.camera(s.camera), kCameraTangent);
   place(layout.correction(), kSightingCorrection);
   if (tie) place(layout.target(direction), kDirectionTangent);
-  W.resize(rows, T);
+  W.resize(count, T);
+  std::vector<double> t_s;
+  for (const Sighting& s : sightings) t_s.push_back(s.t_s);
+  whitening = whitener(noise, t_s);
 }
 
 template <class Target>
@@ -80,42 +98,70 @@ double LandmarkBlock<Target>::linearise(const std::vector<CameraView>& views, co
                                         const CameraLayout& layout, CameraEquations& eq) {
   H.setZero();
   b.setZero();
-  if (runs.empty()) placeRows(layout);
   W.template middleRows<kSightingCorrection>(correctionRow()).setZero();
   PlusJacobian plus;
   manifoldOf(kKindOf<Target>)->PlusJacobian(block, plus.data());
-  double sum = 0, weight;
-  for (Sighting& s : sightings) {
-    s.factor->linearise(views[static_cast<std::size_t>(s.camera)], correction, block, true, s.linearised);
-    sum += robustCost(loss, s.linearised.residual.squaredNorm(), s.weight);
+  const std::size_t n = sightings.size();
+  Residuals residuals(n, +R);
+  rows.resize(n);
+  for (std::size_t i = 0; i < n; ++i) {
+    ImageLinearisation<Target>& l = sightings[i].linearised;
+    sightings[i].factor->linearise(views[static_cast<std::size_t>(sightings[i].camera)], correction, block, true, l);
+    rows[i] << landmark_block::tangentJacobian(l, plus), l.d_correction, l.residual;
+    residuals.row(static_cast<Eigen::Index>(i)) = l.residual;
   }
-  sum = trackCost(2 * sum, weight);
-  for (std::size_t i = 0; i < sightings.size(); ++i) addSighting(i, weight, plus, layout, eq);
+  Eigen::VectorXd weights;
+  double sum = trackCost(residuals, weights);
+  weighSightings(weights);
+  for (std::size_t i = 0; i < n; ++i) addSighting(i, layout, eq);
   if (tie) sum += addTie(layout, eq);
   return sum;
 }
 
+/// `information`, and the sightings' rows times it.
 template <class Target>
-void LandmarkBlock<Target>::addSighting(std::size_t i, double track_weight, const PlusJacobian& plus,
-                                        const CameraLayout& layout, CameraEquations& eq) {
-  const Sighting& sighting = sightings[i];
-  const ImageLinearisation<Target>& l = sighting.linearised;
-  const double root = std::sqrt(sighting.weight * track_weight);
+void LandmarkBlock<Target>::weighSightings(const Eigen::VectorXd& weights) {
+  const Eigen::Index n = weights.size();
+  information.setZero(n, n);
+  for (Eigen::Index k = 0; k < n; ++k)  // row k of L^-1 ends with column k
+    for (Eigen::Index j = 0; j <= k; ++j)
+      if (const double w = weights[k] * whitening(k, j); w != 0)
+        information.col(j).head(k + 1) += w * whitening.row(k).head(k + 1).transpose();
+  weighted_rows.resize(rows.size());
+  for (Eigen::Index i = 0; i < n; ++i) {
+    SightingRows& sum = weighted_rows[static_cast<std::size_t>(i)];
+    sum.setZero();
+    for (Eigen::Index j = 0; j < n; ++j)
+      if (information(i, j) != 0) sum += information(i, j) * rows[static_cast<std::size_t>(j)];
+  }
+}
+
+template <class Target>
+void LandmarkBlock<Target>::addSighting(std::size_t i, const CameraLayout& layout, CameraEquations& eq) {
   using landmark_block::ByRows;  // their transposed ones lie by columns, which makes products of them fast
-  const ByRows<Target::kRows, T> J = root * landmark_block::tangentJacobian(l, plus);
-  const ByRows<Target::kRows, kCameraTangent> Jc = root * l.d_camera;
-  const ByRows<Target::kRows, kSightingCorrection> Ji = root * l.d_correction;
-  const Eigen::Matrix<double, Target::kRows, 1> r = root * l.residual;
-  H.noalias() += J.transpose() * J;
-  b.noalias() += J.transpose() * r;
-  W.template middleRows<kSightingCorrection>(correctionRow()).noalias() += Ji.transpose() * J;
-  W.template middleRows<kCameraTangent>(kCameraTangent * static_cast<Eigen::Index>(i)).noalias() = Jc.transpose() * J;
-  const Eigen::Index at = layout.camera(sighting.camera), correction = layout.correction();
-  eq.H.block<kCameraTangent, kCameraTangent>(at, at).noalias() += Jc.transpose() * Jc;
-  eq.H.block<kSightingCorrection, kCameraTangent>(correction, at).noalias() += Ji.transpose() * Jc;
-  eq.H.block<kSightingCorrection, kSightingCorrection>(correction, correction).noalias() += Ji.transpose() * Ji;
-  eq.b.segment<kCameraTangent>(at).noalias() += Jc.transpose() * r;
-  eq.b.segment<kSightingCorrection>(correction).noalias() += Ji.transpose() * r;
+  const ByRows<R, T> J = rows[i].template leftCols<T>(), weighted_J = weighted_rows[i].template leftCols<T>();
+  const ByRows<R, kSightingCorrection> Ji = rows[i].template middleCols<kSightingCorrection>(T),
+                                       weighted_Ji = weighted_rows[i].template middleCols<kSightingCorrection>(T);
+  const Eigen::Matrix<double, R, 1> weighted_r = weighted_rows[i].template rightCols<1>();
+  const ByRows<R, kCameraTangent> Jc = sightings[i].linearised.d_camera;
+  H.noalias() += J.transpose() * weighted_J;
+  b.noalias() += J.transpose() * weighted_r;
+  W.template middleRows<kSightingCorrection>(correctionRow()).noalias() += Ji.transpose() * weighted_J;
+  W.template middleRows<kCameraTangent>(kCameraTangent * static_cast<Eigen::Index>(i)).noalias() =
+      Jc.transpose() * weighted_J;
+  const Eigen::Index at = layout.camera(sightings[i].camera), correction = layout.correction();
+  for (std::size_t j = 0; j <= i; ++j) {
+    const double weight = information(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(j));
+    if (weight == 0) continue;
+    const ByRows<R, kCameraTangent> weighted_Jc = weight * sightings[j].linearised.d_camera;
+    eq.H.block<kCameraTangent, kCameraTangent>(at, layout.camera(sightings[j].camera)).noalias() +=
+        Jc.transpose() * weighted_Jc;
+  }
+  eq.H.block<kSightingCorrection, kCameraTangent>(correction, at).noalias() += weighted_Ji.transpose() * Jc;
+  eq.H.block<kSightingCorrection, kSightingCorrection>(correction, correction).noalias() +=
+      Ji.transpose() * weighted_Ji;
+  eq.b.segment<kCameraTangent>(at).noalias() += Jc.transpose() * weighted_r;
+  eq.b.segment<kSightingCorrection>(correction).noalias() += Ji.transpose() * weighted_r;
 }
 
 template <class Target>

@@ -26,6 +26,17 @@ std::set<BlockKey> stayingLandmarks(const std::vector<Factor>& factors) {
   return staying;
 }
 
+template <class Landmarks, class F>
+void eachLandmark(Landmarks& landmarks, F&& f) {
+  for (auto& point : std::get<0>(landmarks).blocks) f(point);
+  for (auto& line : std::get<1>(landmarks).blocks) f(line);
+}
+
+template <class Kept, class F>
+void eachKept(const Kept& kept, F&& f) {
+  std::apply([&f](const auto&... kinds) { (std::for_each(kinds.begin(), kinds.end(), f), ...); }, kept);
+}
+
 }  // namespace
 
 LandmarkSystem::LandmarkSystem(SlidingWindow& window, const std::vector<Factor>& factors,
@@ -48,6 +59,7 @@ LandmarkSystem::LandmarkSystem(SlidingWindow& window, const std::vector<Factor>&
       others_.push_back(&factor);
     }
   }
+  eachLandmark(landmarks_, [&](auto& landmark) { landmark.prepare(layout_); });
 }
 
 /// False when the factor is no residual of an image that sees such a target.
@@ -63,10 +75,12 @@ bool LandmarkSystem::addSighting(SlidingWindow& window, const Factor& factor, co
     if (staying_.count(key) == 0) {
       LandmarkBlock<Target>& landmark = landmarkOf<Target>(window, key.id);
       landmark.loss = factor.loss;
-      landmark.track_loss = TrackLoss(factor.track_freedom);
+      landmark.noise = factor.noise;
       auto& sighting = landmark.sightings.emplace_back();
       sighting.factor = image;
       sighting.camera = camera;
+      sighting.t_s =
+          1e-9 * static_cast<double>(window.frames[static_cast<std::size_t>(camera)].t_ns - window.frames.front().t_ns);
       return true;
     }
   }
@@ -95,21 +109,6 @@ int LandmarkSystem::keep(SlidingWindow& window, const BlockKey& key) {
   }
   return it->second;
 }
-
-namespace {
-
-template <class Landmarks, class F>
-void eachLandmark(Landmarks& landmarks, F&& f) {
-  for (auto& point : std::get<0>(landmarks).blocks) f(point);
-  for (auto& line : std::get<1>(landmarks).blocks) f(line);
-}
-
-template <class Kept, class F>
-void eachKept(const Kept& kept, F&& f) {
-  std::apply([&f](const auto&... kinds) { (std::for_each(kinds.begin(), kinds.end(), f), ...); }, kept);
-}
-
-}  // namespace
 
 std::set<BlockKey> LandmarkSystem::states(const SlidingWindow& window) const {
   std::set<BlockKey> states(layout_.kept.begin(), layout_.kept.end());

@@ -84,6 +84,8 @@ void WindowFactors::addPoints() {
 
 void WindowFactors::addPoint(const PointTrack& track) {
   if (track.sightings.size() < 2) return;  // one sighting says nothing about the cameras
+  const TrackNoise noise{params_.point_noise_px / params_.point_sigma_px,
+                         params_.point_walk_px / params_.point_sigma_px, params_.track_freedom};
   for (const PointSighting& s : track.sightings) {
     point_factors_.emplace_back(s.px, window_.camera(), motionOf(s.frame), track.origin_w, params_.point_sigma_px,
                                 window_.rowTime(s.seen_px));
@@ -93,7 +95,7 @@ void WindowFactors::addPoint(const PointTrack& track) {
                          {BlockKey::kExtrinsics, 0},
                          {BlockKey::kCorrection, 0},
                          {BlockKey::kPoint, track.id}},
-                        params_.track_freedom});
+                        noise});
   }
 }
 
@@ -109,6 +111,8 @@ void WindowFactors::addLine(const LineTrack& track, const DegeneracyParams& dege
     return;
   }
   if (track.sightings.size() < 2) return;  // one sighting says nothing about the cameras
+  const TrackNoise noise{params_.line_noise_px / params_.line_sigma_px, params_.line_walk_px / params_.line_sigma_px,
+                         params_.track_freedom};
   for (const LineSighting& s : track.sightings) {
     line_factors_.emplace_back(s.start, s.end, motionOf(s.frame), track.origin_w, params_.line_sigma_px * s.sigma_px);
     factors_.push_back({&line_factors_.back(),
@@ -117,7 +121,7 @@ void WindowFactors::addLine(const LineTrack& track, const DegeneracyParams& dege
                          {BlockKey::kExtrinsics, 0},
                          {BlockKey::kCorrection, 0},
                          {BlockKey::kLine, track.id}},
-                        params_.track_freedom});
+                        noise});
   }
   if (track.group == 0) return;
   setStructuralLoss(degeneracy);

@@ -121,8 +121,7 @@ TEST_F(MarginalizerTest, PointsThatStayMayGoLater) {
   std::set<BlockKey> points;
   for (const BlockKey& key : dropped)
     if (key.kind == BlockKey::kPoint && points.size() < 3) points.insert(key);
-  FactorParams params = kParams.factors;
-  params.track_freedom = std::numeric_limits<double>::infinity();  // points that stay have no loss of their track
+  const FactorParams params = withoutTrackLoss();  // as it is with points that stay
   WindowFactors factors(window_, params);
   factors.addImu();
   factors.addPoints();

@@ -72,8 +72,8 @@ enum class Structure { kNone, kShared, kPairs };
 
 WindowFactors factorsOf(const SlidingWindow& window, const std::vector<TrackId>& lines, Structure structure) {
   FactorParams params = withoutTrackLoss();
-  params.line_sigma_px = 1;  // the structure turns lines by small angles only
-  params.point_sigma_px = 0.7;
+  params.line_sigma_px = params.line_noise_px = 1;  // the structure turns lines by small angles only
+  params.point_sigma_px = params.point_noise_px = 0.7;
   WindowFactors factors(window, params);
   factors.addAll(kParams, window.T_b_c());
   factors.add(makeBlockPrior(manifoldOf(BlockKey::kMotion), window.frames.front().motion,

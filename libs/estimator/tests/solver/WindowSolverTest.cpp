@@ -76,7 +76,7 @@ double errorWithSlidingPoints(const FactorParams& params) {
 }
 
 TEST(WindowSolver, TracksThatSlideLoseTheirWeightAsWholes) {
-  EXPECT_LT(errorWithSlidingPoints(kParams.factors), 0.7 * errorWithSlidingPoints(withoutTrackLoss()));
+  EXPECT_LT(errorWithSlidingPoints(forWhiteNoise().factors), 0.7 * errorWithSlidingPoints(withoutTrackLoss()));
 }
 
 TEST(WindowSolver, WhatIsNotRefinedIsAConstantAndTheRestIsNot) {
@@ -119,13 +119,14 @@ double statesApart(SlidingWindow& window, const SlidingWindow& other, const std:
 }
 
 TEST(WindowSolver, StatesHaveSettledBeforeTheLandmarks) {
+  const FactorParams params = forWhiteNoise().factors;
   SlidingWindow window = disturbedWindow();
-  const WindowFactors before = everything(window);
+  const WindowFactors before = everything(window, params);
   solveWindow(window, before.factors(), kParams.calibration, {50});
   for (auto& [id, track] : window.points)  // as in a flight: good states, new landmarks that are not yet in place
     if (id % 4 == 0) track.point.head<3>() *= 1.5;
   SlidingWindow settled = window;
-  const WindowFactors factors = everything(window), same = everything(settled);
+  const WindowFactors factors = everything(window, params), same = everything(settled, params);
   const SolveSummary all = solveWindow(window, factors.factors(), kParams.calibration, {50});
   const SolveSummary some = solveWindow(settled, same.factors(), kParams.calibration, {50, 0.3});
   EXPECT_LT(some.iterations, all.iterations);

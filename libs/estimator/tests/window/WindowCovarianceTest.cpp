@@ -99,7 +99,8 @@ TEST_F(WindowCovarianceTest, IsThatOfTheWholeProblemWithTheFirstPoseHeld) {
 }
 
 TEST_F(WindowCovarianceTest, ScaleIsKnownAsTheLongestDistanceIs) {
-  WindowFactors factors(window_, kParams.factors);
+  const FactorParams params = forWhiteNoise().factors;
+  WindowFactors factors(window_, params);
   addAll(factors);
   const double sigma = covariance(factors.factors()).relativeScaleSigma(window_);
   factors.addGauge();

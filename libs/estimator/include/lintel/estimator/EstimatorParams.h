@@ -9,10 +9,14 @@ namespace lintel {
 
 /// How observations become residuals.
 struct FactorParams {
-  double point_sigma_px = 0.4;    ///< standard deviation of a tracked point [px]
+  double point_sigma_px = 0.4;    ///< standard deviation of a tracked point by itself [px]
+  double point_noise_px = 0.15;   ///< in the window: the white part of a track's errors (TrackNoise) [px]
+  double point_walk_px = 0.3;     ///< and the standard deviation of their walk after a second [px]
   double point_loss_width = 1.5;  ///< Cauchy width, in standard deviations
   double line_sigma_px = 0.6;     ///< scales LineObservation::sigma_px
-  double line_loss_width = 1.5;   ///< Cauchy width, in standard deviations
+  double line_noise_px = 0.3;     ///< as with points; both scale LineObservation::sigma_px
+  double line_walk_px = 0.4;
+  double line_loss_width = 1.5;  ///< Cauchy width, in standard deviations
   double track_freedom = 4;  ///< of a track's own variance about these: the smaller, the more tracks differ (TrackLoss)
   double gyro_noise_scale = 1.0;   ///< of the rig's noise density; 1: checked against the samples (NoiseMeter)
   double accel_noise_scale = 1.0;  ///< the same; other than 1: the rig's density is taken as given
@@ -22,8 +26,12 @@ struct FactorParams {
   template <class F>
   void fields(F&& field) {
     field("point_sigma_px", point_sigma_px, Range{0.01, 100});
+    field("point_noise_px", point_noise_px, Range{0.01, 100});
+    field("point_walk_px", point_walk_px, Range{0, 100});
     field("point_loss_width", point_loss_width, Range{0.1, 1000000});
     field("line_sigma_px", line_sigma_px, Range{0.01, 100});
+    field("line_noise_px", line_noise_px, Range{0.01, 100});
+    field("line_walk_px", line_walk_px, Range{0, 100});
     field("line_loss_width", line_loss_width, Range{0.1, 1000000});
     field("track_freedom", track_freedom, Range{0.1, 1000000});
     field("gyro_noise_scale", gyro_noise_scale, Range{0.001, 10000});
