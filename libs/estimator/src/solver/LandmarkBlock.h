@@ -8,6 +8,7 @@
 #include "lintel/factors/TrackLoss.h"
 #include "lintel/factors/TrackNoise.h"
 #include "solver/CameraEquations.h"
+#include "solver/CameraPairs.h"
 #include "solver/Factor.h"
 #include "solver/PanelSquare.h"
 
@@ -48,6 +49,8 @@ struct LandmarkBlock {
   Eigen::MatrixXd whitening;                      ///< L^-1
   Eigen::MatrixXd information;
   std::vector<SightingRows> rows, weighted_rows;  ///< of all sightings; times `information`
+  std::vector<CameraRows> camera_rows;
+  std::vector<Eigen::Index> camera_places;  ///< in CameraEquations
 
   /// What does not depend on the blocks' values, when all sightings and the tie are there.
   void prepare(const CameraLayout& layout);

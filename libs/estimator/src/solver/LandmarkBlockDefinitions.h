@@ -84,7 +84,10 @@ void LandmarkBlock<Target>::prepare(const CameraLayout& layout) {
     append({count, to, size}, runs);
     count += size;
   };
-  for (const Sighting& s : sightings) place(layout.camera(s.camera), kCameraTangent);
+  for (const Sighting& s : sightings) {
+    camera_places.push_back(layout.camera(s.camera));
+    place(camera_places.back(), kCameraTangent);
+  }
   place(layout.correction(), kSightingCorrection);
   if (tie) place(layout.target(direction), kDirectionTangent);
   W.resize(count, T);
@@ -104,16 +107,19 @@ double LandmarkBlock<Target>::linearise(const std::vector<CameraView>& views, co
   const std::size_t n = sightings.size();
   Residuals residuals(n, +R);
   rows.resize(n);
+  camera_rows.resize(n);
   for (std::size_t i = 0; i < n; ++i) {
     ImageLinearisation<Target>& l = sightings[i].linearised;
     sightings[i].factor->linearise(views[static_cast<std::size_t>(sightings[i].camera)], correction, block, true, l);
     rows[i] << landmark_block::tangentJacobian(l, plus), l.d_correction, l.residual;
+    camera_rows[i] = l.d_camera;
     residuals.row(static_cast<Eigen::Index>(i)) = l.residual;
   }
   Eigen::VectorXd weights;
   double sum = trackCost(residuals, weights);
   weighSightings(weights);
   for (std::size_t i = 0; i < n; ++i) addSighting(i, layout, eq);
+  addCameraPairs(camera_rows, information, camera_places, eq.H);
   if (tie) sum += addTie(layout, eq);
   return sum;
 }
@@ -143,20 +149,13 @@ void LandmarkBlock<Target>::addSighting(std::size_t i, const CameraLayout& layou
   const ByRows<R, kSightingCorrection> Ji = rows[i].template middleCols<kSightingCorrection>(T),
                                        weighted_Ji = weighted_rows[i].template middleCols<kSightingCorrection>(T);
   const Eigen::Matrix<double, R, 1> weighted_r = weighted_rows[i].template rightCols<1>();
-  const ByRows<R, kCameraTangent> Jc = sightings[i].linearised.d_camera;
+  const CameraRows& Jc = camera_rows[i];
   H.noalias() += J.transpose() * weighted_J;
   b.noalias() += J.transpose() * weighted_r;
   W.template middleRows<kSightingCorrection>(correctionRow()).noalias() += Ji.transpose() * weighted_J;
   W.template middleRows<kCameraTangent>(kCameraTangent * static_cast<Eigen::Index>(i)).noalias() =
       Jc.transpose() * weighted_J;
   const Eigen::Index at = layout.camera(sightings[i].camera), correction = layout.correction();
-  for (std::size_t j = 0; j <= i; ++j) {
-    const double weight = information(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(j));
-    if (weight == 0) continue;
-    const ByRows<R, kCameraTangent> weighted_Jc = weight * sightings[j].linearised.d_camera;
-    eq.H.block<kCameraTangent, kCameraTangent>(at, layout.camera(sightings[j].camera)).noalias() +=
-        Jc.transpose() * weighted_Jc;
-  }
   eq.H.block<kSightingCorrection, kCameraTangent>(correction, at).noalias() += weighted_Ji.transpose() * Jc;
   eq.H.block<kSightingCorrection, kSightingCorrection>(correction, correction).noalias() +=
       Ji.transpose() * weighted_Ji;
