@@ -7,7 +7,9 @@
 #include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <map>
+#include <vector>
 
 namespace lintel::test {
 
@@ -50,40 +52,64 @@ LinearFactor lineariseFactor(SlidingWindow& window, const Factor& factor,
   return result;
 }
 
-/// Of all factors of a track, one below the other: made independent by the Cholesky factor of their covariance as
-/// TrackNoise's comment says, then with the loss of each sighting and of all of them, Student's t distribution with
-/// weights (freedom + n) / (freedom + sum of squares), n the number of residuals less the dimensions of the landmark.
-void addTrack(const SlidingWindow& window, const std::vector<const Factor*>& factors,
-              const std::vector<LinearFactor>& sightings, NormalEquations& eq) {
-  const auto count = static_cast<Eigen::Index>(factors.size()), rows = sightings.front().residual.size();
-  const TrackNoise& noise = factors.front()->noise;
-  const auto time = [&](Eigen::Index i) {
-    return 1e-9 * static_cast<double>(window.frame(factors[static_cast<std::size_t>(i)]->blocks.front().id).t_ns);
-  };
-  Eigen::MatrixXd covariance(count * rows, count * rows), J(count * rows, eq.H.cols());
-  Eigen::VectorXd r(count * rows);
-  for (Eigen::Index i = 0; i < count; ++i) {
-    r.segment(rows * i, rows) = sightings[static_cast<std::size_t>(i)].residual;
-    J.middleRows(rows * i, rows) = sightings[static_cast<std::size_t>(i)].jacobian;
+/// The covariance of a track's errors by TrackNoise's comment, of all residuals.
+Eigen::MatrixXd covarianceOf(const NoiseKind& kind, const std::vector<double>& t_s, Eigen::Index rows) {
+  const auto count = static_cast<Eigen::Index>(t_s.size());
+  Eigen::MatrixXd covariance(count * rows, count * rows);
+  for (Eigen::Index i = 0; i < count; ++i)
     for (Eigen::Index j = 0; j < count; ++j)
       covariance.block(rows * i, rows * j, rows, rows) =
           Eigen::MatrixXd::Identity(rows, rows) *
-          ((i == j ? noise.white * noise.white : 0) +
-           noise.walk * noise.walk * std::min(time(i) - time(0), time(j) - time(0)));
-  }
-  const Eigen::LLT<Eigen::MatrixXd> llt(covariance);
-  llt.matrixL().solveInPlace(r);
-  llt.matrixL().solveInPlace(J);
+          ((i == j ? kind.white * kind.white : 0) +
+           kind.walk * kind.walk * (t_s[static_cast<std::size_t>(std::min(i, j))] - t_s.front()));
+  return covariance;
+}
+
+/// Weights of the residuals of a track that are independent already: the loss of each sighting and of all of them,
+/// Student's t distribution with weights (freedom + n) / (freedom + sum of squares), n the number of residuals less the
+/// dimensions of the landmark. Gives minus the logarithm of their density.
+Eigen::VectorXd weightsOf(const Factor& factor, double freedom, const Eigen::VectorXd& r, Eigen::Index rows,
+                          double& cost) {
   double squares = 0, square;
   Eigen::VectorXd weights(r.size());
-  for (Eigen::Index i = 0; i < count; ++i) {
-    weights.segment(rows * i, rows)
-        .setConstant(lossWeight(factors.front()->loss, r.segment(rows * i, rows).squaredNorm(), square));
+  for (Eigen::Index i = 0; i < r.size(); i += rows) {
+    weights.segment(i, rows).setConstant(lossWeight(factor.loss, r.segment(i, rows).squaredNorm(), square));
     squares += square;
   }
-  if (!std::isinf(noise.freedom)) {
-    const double n = static_cast<double>(r.size()) - manifoldOf(factors.front()->blocks.back().kind)->TangentSize();
-    weights *= (noise.freedom + n) / (noise.freedom + squares);
+  cost = 0.5 * squares;
+  if (std::isinf(freedom)) return weights;
+  const double n = static_cast<double>(r.size()) - manifoldOf(factor.blocks.back().kind)->TangentSize();
+  cost = 0.5 * (freedom + n) * std::log(1 + squares / freedom);
+  return weights * (freedom + n) / (freedom + squares);
+}
+
+/// Of all factors of a track, one below the other: made independent by the Cholesky factor of their covariance, by the
+/// kind of noise that makes them likeliest.
+void addTrack(const SlidingWindow& window, const std::vector<const Factor*>& factors,
+              const std::vector<LinearFactor>& sightings, NormalEquations& eq) {
+  const auto count = static_cast<Eigen::Index>(factors.size()), rows = sightings.front().residual.size();
+  std::vector<double> t_s;
+  Eigen::MatrixXd all_J(count * rows, eq.H.cols()), J;
+  Eigen::VectorXd all_r(count * rows), r, weights;
+  for (Eigen::Index i = 0; i < count; ++i) {
+    const auto at = static_cast<std::size_t>(i);
+    t_s.push_back(1e-9 * static_cast<double>(window.frame(factors[at]->blocks.front().id).t_ns));
+    all_r.segment(rows * i, rows) = sightings[at].residual;
+    all_J.middleRows(rows * i, rows) = sightings[at].jacobian;
+  }
+  const double n = static_cast<double>(all_r.size());
+  const double share = std::max(1.0, n - manifoldOf(factors.front()->blocks.back().kind)->TangentSize()) / n;
+  double least = std::numeric_limits<double>::infinity(), cost;
+  for (const NoiseKind& kind : factors.front()->noise->kinds) {
+    const Eigen::LLT<Eigen::MatrixXd> llt(covarianceOf(kind, t_s, rows));
+    const Eigen::VectorXd whitened = llt.matrixL().solve(all_r);
+    const Eigen::VectorXd w = weightsOf(*factors.front(), factors.front()->noise->freedom, whitened, rows, cost);
+    cost += share * llt.matrixLLT().diagonal().array().log().sum();
+    if (cost >= least) continue;
+    least = cost;
+    r = whitened;
+    J = llt.matrixL().solve(all_J);
+    weights = w;
   }
   eq.H += J.transpose() * weights.asDiagonal() * J;
   eq.b += J.transpose() * weights.asDiagonal() * r;

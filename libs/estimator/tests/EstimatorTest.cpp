@@ -19,7 +19,7 @@ namespace {
 using namespace test;
 
 /// Everything an estimator said about a flight; the last update is finish()'s.
-std::vector<WindowUpdate> run(const TrackedFlight& flight, const EstimatorParams& params = forWhiteNoise(),
+std::vector<WindowUpdate> run(const TrackedFlight& flight, const EstimatorParams& params = {},
                               bool lines = true) {
   Estimator estimator(flight.rig, params);
   std::vector<WindowUpdate> updates;
@@ -76,7 +76,7 @@ TrackSimulationParams tracksFor(double duration_s, double noise_px) {
 
 /// The calibration of a simulated flight is perfect: what is left of the error is the estimator's.
 EstimatorParams withoutCalibration() {
-  EstimatorParams params = forWhiteNoise();
+  EstimatorParams params;
   params.calibration.refine_camera = params.calibration.refine_extrinsics = params.calibration.refine_readout =
       params.calibration.refine_time_offset = false;
   return params;
@@ -172,7 +172,7 @@ TEST(Estimator, PointsThatLastInThePriorMakeItBetter) {
     TrackSimulationParams tracks = tracksFor(10, 0.4);
     tracks.seed = seed;
     const TrackedFlight flight = fly(imu, tracks);
-    EstimatorParams none = forWhiteNoise();
+    EstimatorParams none;
     none.landmarks.lasting_points = 0;
     log_ratio += std::log(positionError(run(flight), flight) / positionError(run(flight, none), flight)) / kSeeds;
   }
@@ -182,7 +182,7 @@ TEST(Estimator, PointsThatLastInThePriorMakeItBetter) {
 
 TEST(Estimator, NoPointLastsWhileTheStartIsOnTrial) {
   const TrackedFlight flight = fly(ImuSimulatorParams{}, tracksFor(8, 0.4));
-  EstimatorParams none = forWhiteNoise();
+  EstimatorParams none;
   none.landmarks.lasting_points = 0;
   const auto with = run(flight), without = run(flight, none);
   std::size_t alike = 0, tracked = 0;
@@ -205,7 +205,7 @@ TEST(Estimator, LinesDoNotMakeItWorse) {
     tracks.max_points_per_frame = 40;
     const TrackedFlight flight = fly(imu, tracks);
     log_ratio +=
-        std::log(positionError(run(flight), flight) / positionError(run(flight, forWhiteNoise(), false), flight)) /
+        std::log(positionError(run(flight), flight) / positionError(run(flight, {}, false), flight)) /
         kSeeds;
   }
   RecordProperty("with_lines_over_without", std::to_string(std::exp(log_ratio)));
@@ -371,7 +371,7 @@ TrackedFlight darkened(TrackedFlight flight, std::size_t from, std::size_t frame
 TEST(Estimator, BlindnessIsBridgedForAWhileAndThenAFailure) {
   const TrackedFlight flight = fly(ImuSimulatorParams{}, tracksFor(5.5, 0.3));
   const std::size_t dark = 60;
-  EstimatorParams params = forWhiteNoise();
+  EstimatorParams params;
   params.failure.max_blind_frames = 20;
   const auto moment = run(darkened(flight, dark, 6), params);
   EXPECT_EQ(lostOf(moment), 0);
@@ -430,7 +430,7 @@ std::vector<std::pair<std::int64_t, Pose>> trajectoryOf(const std::vector<Window
 TEST(Estimator, AWrongStartIsWithdrawnAndReplacedWithoutAGap) {
   const std::size_t wrong = 36;
   const TrackedFlight flight = withSlowStart(fly(ImuSimulatorParams{}, tracksFor(9, 0.3)), wrong, 2);
-  const auto updates = run(flight);
+  const auto updates = run(flight, forWhiteNoise());
   ASSERT_EQ(lostOf(updates), 1);
   std::size_t lost = 0, first = 0;
   while (!updates[first].hasPose()) ++first;

@@ -4,6 +4,9 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/LU>
+#include <algorithm>
+#include <cmath>
+#include <random>
 
 namespace lintel {
 namespace {
@@ -22,7 +25,7 @@ TEST(TrackNoise, TwoObservationsByHand) {
 }
 
 TEST(TrackNoise, WhitenedErrorsAreIndependentAndOfUnitVariance) {
-  const TrackNoise noise{0.3, 0.8};
+  const NoiseKind noise{0.3, 0.8};
   const std::vector<double> t_s = {0.2, 0.3, 0.7, 1.9, 2.0};
   Eigen::MatrixXd covariance(5, 5);
   for (int i = 0; i < 5; ++i)
@@ -31,11 +34,54 @@ TEST(TrackNoise, WhitenedErrorsAreIndependentAndOfUnitVariance) {
   const Eigen::MatrixXd W = whitener(noise, t_s);
   EXPECT_TRUE((W * covariance * W.transpose()).isIdentity(1e-12));
   EXPECT_TRUE(W.isLowerTriangular());
+  Eigen::MatrixXd errors = Eigen::MatrixXd::Random(5, 2);
+  const Eigen::MatrixXd expected = W * errors;
+  EXPECT_NEAR(whiten(noise, t_s, errors), 0.5 * std::log(covariance.determinant()), 1e-12);
+  EXPECT_TRUE(errors.isApprox(expected, 1e-12));
+}
+
+TEST(TrackNoise, KindsDifferByTheirWalk) {
+  const auto kinds = kindsAbout({0.1, 0.8});
+  ASSERT_EQ(kinds.size(), 3u);
+  for (std::size_t i = 0; i < 3; ++i) {
+    EXPECT_EQ(kinds[i].white, 0.1);
+    EXPECT_EQ(kinds[i].walk, 0.2 * std::pow(4, i));
+  }
+  EXPECT_EQ(kindsAbout({0.4, 0}).size(), 1u) << "white noise";
+}
+
+TEST(TrackNoise, TheKindIsFoundInATracksErrors) {
+  const auto kinds = kindsAbout({0.15, 0.3});
+  const std::vector<double> t_s = {0, 0.1, 0.2, 0.3, 0.5, 0.7, 0.9, 1.2, 1.6, 2};
+  std::mt19937 random(1);
+  std::normal_distribution<double> unit;
+  constexpr int kTracks = 100;
+  for (std::size_t truth = 0; truth < kinds.size(); ++truth) {
+    int found = 0;
+    for (int track = 0; track < kTracks; ++track) {
+      Eigen::MatrixXd errors(10, 2);
+      Eigen::RowVector2d walk = Eigen::RowVector2d::Zero();
+      for (std::size_t i = 0; i < t_s.size(); ++i) {
+        const double step = i == 0 ? 0 : kinds[truth].walk * std::sqrt(t_s[i] - t_s[i - 1]);
+        walk += step * Eigen::RowVector2d(unit(random), unit(random));
+        errors.row(static_cast<Eigen::Index>(i)) =
+            walk + kinds[truth].white * Eigen::RowVector2d(unit(random), unit(random));
+      }
+      std::vector<double> costs;
+      for (const NoiseKind& kind : kinds) {
+        Eigen::MatrixXd whitened = errors;
+        const double log_det = whiten(kind, t_s, whitened);
+        costs.push_back(0.5 * whitened.squaredNorm() + 2 * log_det);
+      }
+      found += std::min_element(costs.begin(), costs.end()) - costs.begin() == static_cast<std::ptrdiff_t>(truth);
+    }
+    EXPECT_GE(found, 80 * kTracks / 100) << truth;
+  }
 }
 
 TEST(TrackNoise, ASlideIsForgivenAndAJumpIsNot) {
   // the same step of one pixel: over a second, and within a tenth of it and back
-  const TrackNoise noise{0.1, 0.5};
+  const NoiseKind noise{0.1, 0.5};
   const auto cost = [&](const std::vector<double>& t_s, const Eigen::Vector3d& errors) {
     return (whitener(noise, t_s) * errors).squaredNorm();
   };

@@ -16,7 +16,8 @@ namespace lintel {
 
 /// A point or a line that is eliminated: its residuals, its part of the normal equations, and its last elimination.
 ///
-/// The errors of its sightings are correlated (TrackNoise). With r the residuals of all, whitened ones are L^-1 r; the
+/// The errors of its sightings are correlated (TrackNoise), by which of the kinds is chosen with the residuals of the
+/// first linearisation. With r the residuals of all, whitened ones are L^-1 r; the
 /// loss counts for each of these, the track's for their sum. In the normal equations sightings i and j then meet with
 /// the weight in row i and column j of the information L^-T diag(weights) L^-1.
 template <class Target>
@@ -36,7 +37,7 @@ struct LandmarkBlock {
 
   double* block = nullptr;
   const ceres::LossFunction* loss = nullptr;  ///< of a sighting
-  TrackNoise noise;
+  const TrackNoise* noise = &kWhiteNoise;
   std::vector<Sighting> sightings;  ///< the earliest first
   const Factor* tie = nullptr;      ///< ties a line to a direction
   int direction = -1;               ///< its place among the kept targets
@@ -46,7 +47,7 @@ struct LandmarkBlock {
   Eigen::Matrix<double, Eigen::Dynamic, T> W, Y;  ///< the landmark's columns of H, in the rows of its cameras, of the
                                                   ///< correction and of its direction; the same times inverse_root
   std::vector<RowRun> runs;                       ///< where these rows lie in CameraEquations
-  Eigen::MatrixXd whitening;                      ///< L^-1
+  Eigen::MatrixXd whitening;                      ///< L^-1; empty before the first linearisation
   Eigen::MatrixXd information;
   std::vector<SightingRows> rows, weighted_rows;  ///< of all sightings; times `information`
   std::vector<CameraRows> camera_rows;
@@ -72,6 +73,8 @@ struct LandmarkBlock {
   using PlusJacobian = Eigen::Matrix<double, kSize, T, Eigen::RowMajor>;
   using Residuals = Eigen::Matrix<double, Eigen::Dynamic, R>;  ///< a row a sighting
 
+  void chooseNoise(const Residuals& residuals);
+  double whitenedCost(const Residuals& whitened, Eigen::VectorXd& weights) const;
   double trackCost(const Residuals& residuals, Eigen::VectorXd& weights) const;
   void weighSightings(const Eigen::VectorXd& weights);
   Eigen::Index correctionRow() const { return kCameraTangent * static_cast<Eigen::Index>(sightings.size()); }

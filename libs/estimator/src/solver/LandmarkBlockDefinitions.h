@@ -5,6 +5,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
+#include <vector>
 
 #include "lintel/geometry/SmallMatrices.h"
 #include "solver/LandmarkBlock.h"
@@ -43,14 +45,43 @@ Eigen::Matrix<double, T, T> inverseRoot(Eigen::Matrix<double, T, T> H, double da
 
 }  // namespace landmark_block
 
-/// The weights are the derivatives of the cost by half the squares of whitened residuals.
+/// The kind of noise that makes the residuals likeliest. The determinant is that of all residuals; the landmark takes
+/// its degrees of freedom off, and with them its share of the determinant: otherwise short tracks, whose residuals the
+/// landmark takes up, were all of the quietest kind.
+template <class Target>
+void LandmarkBlock<Target>::chooseNoise(const Residuals& residuals) {
+  std::vector<double> t_s;
+  for (const Sighting& s : sightings) t_s.push_back(s.t_s);
+  const auto count = static_cast<int>(residuals.size());
+  const double determinants = static_cast<double>(R) * std::max(1, count - T) / count;
+  const NoiseKind* likeliest = &noise->kinds.front();
+  double least = std::numeric_limits<double>::infinity();
+  Eigen::VectorXd weights;
+  for (const NoiseKind& kind : noise->kinds) {
+    if (noise->kinds.size() == 1) break;
+    Residuals whitened = residuals;
+    const double log_det = whiten(kind, t_s, whitened);
+    const double cost = whitenedCost(whitened, weights) + determinants * log_det;
+    if (cost < least) {
+      least = cost;
+      likeliest = &kind;
+    }
+  }
+  whitening = whitener(*likeliest, t_s);
+}
+
 template <class Target>
 double LandmarkBlock<Target>::trackCost(const Residuals& residuals, Eigen::VectorXd& weights) const {
-  const Residuals whitened = whitening.template triangularView<Eigen::Lower>() * residuals;
+  return whitenedCost(whitening.template triangularView<Eigen::Lower>() * residuals, weights);
+}
+
+/// The weights are the derivatives of the cost by half the squares of whitened residuals.
+template <class Target>
+double LandmarkBlock<Target>::whitenedCost(const Residuals& whitened, Eigen::VectorXd& weights) const {
   weights.resize(whitened.rows());
   double sum = 0, track_weight;
   for (Eigen::Index i = 0; i < whitened.rows(); ++i) sum += robustCost(loss, whitened.row(i).squaredNorm(), weights[i]);
-  sum = TrackLoss(noise.freedom).cost(2 * sum, static_cast<int>(whitened.size()), T, track_weight);
+  sum = TrackLoss(noise->freedom).cost(2 * sum, static_cast<int>(whitened.size()), T, track_weight);
   weights *= track_weight;
   return sum;
 }
@@ -91,9 +122,6 @@ void LandmarkBlock<Target>::prepare(const CameraLayout& layout) {
   place(layout.correction(), kSightingCorrection);
   if (tie) place(layout.target(direction), kDirectionTangent);
   W.resize(count, T);
-  std::vector<double> t_s;
-  for (const Sighting& s : sightings) t_s.push_back(s.t_s);
-  whitening = whitener(noise, t_s);
 }
 
 template <class Target>
@@ -115,6 +143,7 @@ double LandmarkBlock<Target>::linearise(const std::vector<CameraView>& views, co
     camera_rows[i] = l.d_camera;
     residuals.row(static_cast<Eigen::Index>(i)) = l.residual;
   }
+  if (whitening.size() == 0) chooseNoise(residuals);
   Eigen::VectorXd weights;
   double sum = trackCost(residuals, weights);
   weighSightings(weights);

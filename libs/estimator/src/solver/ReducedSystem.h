@@ -41,7 +41,7 @@ class ReducedSystem {
   /// These components of a block are constants, too: equations without them.
   void hold(const BlockKey& key, int first, int count);
 
-  /// Half the sum of (robust) squares at the window's present values.
+  /// Half the sum of (robust) squares at the window's present values, after a linearisation.
   double cost() const;
 
   /// Takes residuals and Jacobians at the present values; returns their cost.

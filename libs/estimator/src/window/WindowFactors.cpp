@@ -11,8 +11,27 @@
 
 namespace lintel {
 
+namespace {
+
+TrackNoise pointNoise(const FactorParams& params) {
+  const double unit = params.point_sigma_px;
+  return {kindsAbout({params.point_noise_px / unit, params.point_walk_px / unit}), params.track_freedom};
+}
+
+TrackNoise lineNoise(const FactorParams& params) {
+  const double unit = params.line_sigma_px;
+  return {kindsAbout({params.line_noise_px / unit, params.line_walk_px / unit}), params.track_freedom};
+}
+
+}  // namespace
+
 WindowFactors::WindowFactors(const SlidingWindow& window, const FactorParams& params)
-    : window_(window), params_(params), point_loss_(params.point_loss_width), line_loss_(params.line_loss_width) {
+    : window_(window),
+      params_(params),
+      point_loss_(params.point_loss_width),
+      line_loss_(params.line_loss_width),
+      point_noise_(pointNoise(params)),
+      line_noise_(lineNoise(params)) {
   for (const WindowFrame& frame : window.frames) motions_[frame.id] = frame.bodyMotion();
 }
 
@@ -84,8 +103,6 @@ void WindowFactors::addPoints() {
 
 void WindowFactors::addPoint(const PointTrack& track) {
   if (track.sightings.size() < 2) return;  // one sighting says nothing about the cameras
-  const TrackNoise noise{params_.point_noise_px / params_.point_sigma_px,
-                         params_.point_walk_px / params_.point_sigma_px, params_.track_freedom};
   for (const PointSighting& s : track.sightings) {
     point_factors_.emplace_back(s.px, window_.camera(), motionOf(s.frame), track.origin_w, params_.point_sigma_px,
                                 window_.rowTime(s.seen_px));
@@ -95,7 +112,7 @@ void WindowFactors::addPoint(const PointTrack& track) {
                          {BlockKey::kExtrinsics, 0},
                          {BlockKey::kCorrection, 0},
                          {BlockKey::kPoint, track.id}},
-                        noise});
+                        &point_noise_});
   }
 }
 
@@ -111,8 +128,6 @@ void WindowFactors::addLine(const LineTrack& track, const DegeneracyParams& dege
     return;
   }
   if (track.sightings.size() < 2) return;  // one sighting says nothing about the cameras
-  const TrackNoise noise{params_.line_noise_px / params_.line_sigma_px, params_.line_walk_px / params_.line_sigma_px,
-                         params_.track_freedom};
   for (const LineSighting& s : track.sightings) {
     line_factors_.emplace_back(s.start, s.end, motionOf(s.frame), track.origin_w, params_.line_sigma_px * s.sigma_px);
     factors_.push_back({&line_factors_.back(),
@@ -121,7 +136,7 @@ void WindowFactors::addLine(const LineTrack& track, const DegeneracyParams& dege
                          {BlockKey::kExtrinsics, 0},
                          {BlockKey::kCorrection, 0},
                          {BlockKey::kLine, track.id}},
-                        noise});
+                        &line_noise_});
   }
   if (track.group == 0) return;
   setStructuralLoss(degeneracy);

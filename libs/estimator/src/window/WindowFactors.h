@@ -59,6 +59,7 @@ class WindowFactors {
   const SlidingWindow& window_;
   const FactorParams& params_;
   ceres::CauchyLoss point_loss_, line_loss_;
+  const TrackNoise point_noise_, line_noise_;
   std::unique_ptr<ceres::LossFunction> structural_loss_, calibration_loss_;
   std::map<FrameId, FrameMotion> motions_;
   std::vector<Factor> factors_;

@@ -121,6 +121,7 @@ TEST_F(ReducedSystemTest, TheGradientIsThatOfTheCost) {
   // the loss of whole tracks included, which Ceres cannot have
   const NormalEquations dense = linearise(window_, factors_->factors(), {});
   ReducedSystem system(window_, factors_->factors(), {}, {});
+  system.linearise();
   for (std::size_t i = 0; i < dense.blocks.size(); ++i) {
     const auto manifold = manifoldOf(dense.blocks[i].kind);
     std::vector<double> saved(static_cast<std::size_t>(manifold->AmbientSize()));

@@ -7,19 +7,35 @@
 
 namespace lintel {
 
-/// The errors of a track's observations, a point's or a line's, in units of its factors' residuals. Each is the sum of
-/// white noise and of a random walk: what is tracked slides on the surface as the view of it changes, and errors of the
-/// calibration change with the place in the image. So observations at nearly the same time agree much better than
+/// What the errors of a track's observations may be, a point's or a line's, in units of its factors' residuals: the sum
+/// of white noise and of a random walk. What is tracked slides on the surface as the view of it changes, and errors of
+/// the calibration change with the place in the image; so observations at nearly the same time agree much better than
 /// those far apart.
+struct NoiseKind {
+  double white = 1;  ///< standard deviation of the white noise
+  double walk = 0;   ///< of the walk's change in a second
+};
+
+/// Tracks differ: one on a printed corner hardly slides, one where edges at different depths cross slides by pixels.
+/// Each track is of one of these kinds, its residuals show which (LandmarkBlock).
 struct TrackNoise {
-  double white = 1;                                          ///< standard deviation of the white noise
-  double walk = 0;                                           ///< of the walk's change in a second
+  std::vector<NoiseKind> kinds{NoiseKind{}};
   double freedom = std::numeric_limits<double>::infinity();  ///< of the variance of all of it (TrackLoss)
 };
 
-/// L^-1 of the covariance L L' = white^2 I + walk^2 min(t_i, t_j) of a track's errors in one coordinate, times from the
-/// first observation on. It makes residuals independent: each is what an observation says beyond those before it.
-/// `t_s`: times of the observations [s], ascending.
-Eigen::MatrixXd whitener(const TrackNoise& noise, const std::vector<double>& t_s);
+/// Independent errors of unit variance.
+inline const TrackNoise kWhiteNoise;
+
+/// The typical kind, and those of which the walk is a fourth and four times as large.
+std::vector<NoiseKind> kindsAbout(const NoiseKind& typical);
+
+/// L^-1 times `errors`, with L L' = white^2 I + walk^2 min(t_i, t_j) the covariance of a track's errors in one
+/// coordinate, times from the first observation on: what each observation says beyond those before it, as a Kalman
+/// filter's innovations over their standard deviations. `errors`: a row an observation, a column a coordinate. Returns
+/// log det L. `t_s`: times of the observations [s], ascending.
+double whiten(const NoiseKind& kind, const std::vector<double>& t_s, Eigen::Ref<Eigen::MatrixXd> errors);
+
+/// L^-1 itself.
+Eigen::MatrixXd whitener(const NoiseKind& kind, const std::vector<double>& t_s);
 
 }  // namespace lintel
