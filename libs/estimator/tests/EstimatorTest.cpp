@@ -19,8 +19,7 @@ namespace {
 using namespace test;
 
 /// Everything an estimator said about a flight; the last update is finish()'s.
-std::vector<WindowUpdate> run(const TrackedFlight& flight, const EstimatorParams& params = {},
-                              bool lines = true) {
+std::vector<WindowUpdate> run(const TrackedFlight& flight, const EstimatorParams& params = {}, bool lines = true) {
   Estimator estimator(flight.rig, params);
   std::vector<WindowUpdate> updates;
   for (const SimulatedFrame& frame : flight.sim.frames) {
@@ -204,9 +203,7 @@ TEST(Estimator, LinesDoNotMakeItWorse) {
     tracks.seed = seed;
     tracks.max_points_per_frame = 40;
     const TrackedFlight flight = fly(imu, tracks);
-    log_ratio +=
-        std::log(positionError(run(flight), flight) / positionError(run(flight, {}, false), flight)) /
-        kSeeds;
+    log_ratio += std::log(positionError(run(flight), flight) / positionError(run(flight, {}, false), flight)) / kSeeds;
   }
   RecordProperty("with_lines_over_without", std::to_string(std::exp(log_ratio)));
   EXPECT_LT(std::exp(log_ratio), 1.15);
