@@ -22,6 +22,7 @@
 #include "window/OutlierRejection.h"
 #include "window/RestDetection.h"
 #include "window/RollingShutter.h"
+#include "window/ScaleDrift.h"
 #include "window/WindowCovariance.h"
 #include "window/WindowMarginalization.h"
 #include "window/WindowMove.h"
@@ -98,6 +99,8 @@ class Estimator::Impl {
   RestDetection rest_;
   Initializer initializer_;
   SlidingWindow window_;
+  PlacementCheck placement_;
+  ScaleDrift scale_drift_;
   std::optional<WindowCovariance> sigma_;                        // of the last solve
   StateCovariance newest_covariance_ = StateCovariance::Zero();  // of the newest window frame
   bool tracking_ = false;
@@ -214,6 +217,7 @@ void Estimator::Impl::initialise(WindowUpdate& update) {
   blind_frames_ = tracks_since_start_ = 0;
   unroll(window_);
   solve(update);
+  scale_drift_.start(sigma_->relativeScaleSigma(window_));
   update.status = EstimatorStatus::kTracking;
   first_pose_ns_ = update.t_ns;
   startDrift(update);
@@ -269,6 +273,9 @@ void Estimator::Impl::track(WindowUpdate& update) {
   if (failure.empty() && onTrial() &&
       biasOf(window_.frames.back().motion.data()).accel.norm() > trialBiasAccel(params_.initializer))
     failure = "it led to an implausible accelerometer bias";
+  if (failure.empty() && onTrial() && scale_drift_.leftStart()) failure = "its scale is not what later images show";
+  if (failure.empty() && placement_.contradicted())
+    failure = "most points that move in the images have no place that fits the estimated motion";
   if (!failure.empty()) return fail(onTrial() ? Failure::kWrongStart : Failure::kDiverged, failure, update);
   if (blind_frames_ > params_.failure.max_blind_frames)
     return fail(Failure::kInterrupted, "too few features are tracked", update);
@@ -289,10 +296,13 @@ void Estimator::Impl::solve(WindowUpdate& update) {
   WindowFactors factors(window_, params_.factors);
   factors.addAll(params_, rig_.T_b_c);
   const SolveLimits limits{params_.max_iterations, kSettledMove, true};
+  scale_drift_.beforeSolve(window_);
   SolveSummary solved = solveWindow(window_, factors.factors(), params_.calibration, limits);
   update.iterations = solved.iterations;
   sigma_.emplace(std::move(solved.information));
+  scale_drift_.afterSolve(window_);
   rejectOutliers(window_, params_.landmarks);
+  placement_.add(window_);
   for (auto& [id, track] : window_.lines)
     if (entersProblem(track, params_.degeneracy)) updateLineUncertainty(window_, params_, track);
   const CameraPoses poses(window_);
@@ -378,6 +388,7 @@ void Estimator::Impl::clearWindow(bool keep_calibration) {
     window_.correction.setZero();
   }
   window_.relinearise();  // what comes in is linearised about what is kept
+  placement_ = {};
   pending_imu_.clear();
 }
 

@@ -426,8 +426,8 @@ std::vector<std::pair<std::int64_t, Pose>> trajectoryOf(const std::vector<Window
 // With the default noise of tracks this start is not found out (doc/method/points.md).
 TEST(Estimator, AWrongStartIsWithdrawnAndReplacedWithoutAGap) {
   const std::size_t wrong = 36;
-  const TrackedFlight flight = withSlowStart(fly(ImuSimulatorParams{}, tracksFor(9, 0.3)), wrong, 2);
-  const auto updates = run(flight, forWhiteNoise());
+  const TrackedFlight flight = withSlowStart(fly(ImuSimulatorParams{}, tracksFor(9, 0.3)), wrong, 3);
+  const auto updates = run(flight);
   ASSERT_EQ(lostOf(updates), 1);
   std::size_t lost = 0, first = 0;
   while (!updates[first].hasPose()) ++first;

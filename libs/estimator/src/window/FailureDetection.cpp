@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "window/FailureDetection.h"
 
+#include "lintel/core/ParamRange.h"
+
 namespace lintel {
 
 std::string findFailure(const SlidingWindow& window, const FailureParams& params, const Pose& predicted_T_w_b) {
@@ -15,6 +17,35 @@ std::string findFailure(const SlidingWindow& window, const FailureParams& params
   if (T_w_b.q.angularDistance(predicted_T_w_b.q) > params.max_step_rad)
     return "the orientation jumped away from the IMU's prediction";
   return {};
+}
+
+void PlacementCheck::add(const SlidingWindow& window) {
+  constexpr std::size_t kFrames = 10;  // a second
+  constexpr std::size_t kSightings = 3;
+  const double parallax_rad = 5 / kReferenceFocal_px;
+  const auto ray = [&](const PointSighting& s) {
+    return window.frame(s.frame).T_w_b().q * (window.T_b_c().q * s.observation.ray.normalized());
+  };
+  Count count;
+  for (const auto& [id, track] : window.points) {
+    if (track.sightings.size() < kSightings || track.sightings.back().frame != window.frames.back().id) continue;
+    if ((ray(track.sightings.front()) - ray(track.sightings.back())).norm() < parallax_rad) continue;
+    ++count.moving;
+    count.placed += track.triangulated;
+  }
+  counts_.push_back(count);
+  if (counts_.size() > kFrames) counts_.pop_front();
+}
+
+bool PlacementCheck::contradicted() const {
+  constexpr int kFew = 50;              // say nothing: a moving object alone
+  constexpr double kLeastPlaced = 0.5;  // in good runs, on any recording, 0.85 and more
+  Count sum;
+  for (const Count& count : counts_) {
+    sum.moving += count.moving;
+    sum.placed += count.placed;
+  }
+  return sum.moving >= kFew && sum.placed < kLeastPlaced * sum.moving;
 }
 
 }  // namespace lintel

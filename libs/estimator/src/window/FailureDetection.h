@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <deque>
 #include <string>
 
 #include "lintel/estimator/EstimatorParams.h"
@@ -11,5 +12,23 @@ namespace lintel {
 /// Why the window cannot be trusted any more, in words; empty when it can. `predicted`: the newest pose before the
 /// images were used. [Qin2018, failure detection]
 std::string findFailure(const SlidingWindow& window, const FailureParams& params, const Pose& predicted_T_w_b);
+
+/// Whether the points that move in the images, by more than the rotation explains, have places that fit the estimated
+/// motion. Where the scale has run away, or the images have lost their say against the IMU, they have none: what is
+/// triangulated is rejected with the next frames, while states and biases look plausible.
+class PlacementCheck {
+ public:
+  /// After a solve.
+  void add(const SlidingWindow& window);
+
+  /// Most of them have none, for a second.
+  bool contradicted() const;
+
+ private:
+  struct Count {
+    int moving = 0, placed = 0;
+  };
+  std::deque<Count> counts_;  // of the last window frames
+};
 
 }  // namespace lintel

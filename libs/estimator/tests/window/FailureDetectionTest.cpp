@@ -51,5 +51,30 @@ TEST_F(FailureDetectionTest, JumpsAwayFromThePrediction) {
   EXPECT_EQ(failure(), "the orientation jumped away from the IMU's prediction");
 }
 
+/// A camera that moves sideways past points; of every ten `placed` are triangulated.
+PlacementCheck checkOf(int frames, int points, int placed, double step_m) {
+  SlidingWindow window = windowAt({at(0, 0, 0), at(step_m, 0, 0), at(2 * step_m, 0, 0)});
+  for (int i = 0; i < points; ++i)
+    for (FrameId frame = 0; frame < 3; ++frame)
+      seePoint(window, static_cast<TrackId>(i + 1), frame, {0.1 * i, 0.1 * (i % 3), 5});
+  int i = 0;
+  for (auto& [id, track] : window.points) track.triangulated = i++ % 10 < placed;
+  PlacementCheck check;
+  for (int k = 0; k < frames; ++k) check.add(window);
+  return check;
+}
+
+TEST(PlacementCheck, PointsThatMoveAndHaveNoPlaceContradictTheMotion) {
+  EXPECT_TRUE(checkOf(10, 10, 4, 0.1).contradicted());
+  EXPECT_FALSE(checkOf(10, 10, 6, 0.1).contradicted());
+}
+
+TEST(PlacementCheck, AFewSayNothing) {
+  EXPECT_FALSE(checkOf(10, 4, 0, 0.1).contradicted());
+  EXPECT_FALSE(checkOf(4, 10, 0, 0.1).contradicted());
+}
+
+TEST(PlacementCheck, PointsWithoutParallaxNeedNoPlace) { EXPECT_FALSE(checkOf(10, 10, 0, 0.01).contradicted()); }
+
 }  // namespace
 }  // namespace lintel

@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "window/ScaleDrift.h"
+
+#include <gtest/gtest.h>
+
+#include "TestWindow.h"
+
+namespace lintel {
+namespace {
+
+using namespace test;
+
+SlidingWindow pathOf(double scale) {
+  return windowAt({at(0, 0, 0), at(scale, 0, 0), at(scale, 2 * scale, 0), at(0, 0, 0)});
+}
+
+/// After solves that change the scale in steps.
+ScaleDrift driftOf(double sigma, const std::vector<double>& scales) {
+  ScaleDrift drift;
+  drift.start(sigma);
+  for (std::size_t i = 1; i < scales.size(); ++i) {
+    drift.beforeSolve(pathOf(scales[i - 1]));
+    drift.afterSolve(pathOf(scales[i]));
+  }
+  return drift;
+}
+
+TEST(ScaleDrift, ChangesAddUp) {
+  EXPECT_FALSE(driftOf(0.02, {1, 1.05, 1.12}).leftStart()) << "5.7 sigma";
+  EXPECT_TRUE(driftOf(0.02, {1, 1.05, 1.14}).leftStart()) << "6.6 sigma";
+  EXPECT_TRUE(driftOf(0.02, {1, 0.95, 0.88}).leftStart());
+  EXPECT_FALSE(driftOf(0.02, {1, 1.14, 1}).leftStart()) << "and cancel";
+}
+
+TEST(ScaleDrift, AFewPerCentDoNotPayANewStart) {
+  EXPECT_FALSE(driftOf(0.001, {1, 1.05}).leftStart());
+  EXPECT_TRUE(driftOf(0.001, {1, 1.06}).leftStart());
+}
+
+TEST(ScaleDrift, AStartWithoutScaleIsNotLeft) {
+  EXPECT_FALSE(driftOf(std::numeric_limits<double>::infinity(), {1, 5}).leftStart());
+}
+
+TEST(ScaleDrift, AVehicleAtRestHasNoScale) { EXPECT_FALSE(driftOf(0.02, {0, 1, 0}).leftStart()); }
+
+TEST(ScaleDrift, TurningAndMovingIsNoChange) {
+  ScaleDrift drift;
+  drift.start(0.001);
+  SlidingWindow window = pathOf(1);
+  drift.beforeSolve(window);
+  const Pose T{Eigen::Quaterniond(Eigen::AngleAxisd(1, Eigen::Vector3d::UnitZ())), {5, 3, 1}};
+  for (WindowFrame& frame : window.frames) frame.pose = toBlock(T * frame.T_w_b());
+  drift.afterSolve(window);
+  EXPECT_FALSE(drift.leftStart());
+}
+
+}  // namespace
+}  // namespace lintel
