@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstring>
 #include <set>
 
 #include "TestWindow.h"
@@ -268,8 +267,8 @@ TEST(Estimator, TwoRunsGiveTheSameBits) {
   ASSERT_EQ(a.size(), b.size());
   for (std::size_t k = 0; k < a.size(); ++k) {
     ASSERT_EQ(a[k].status, b[k].status);
-    ASSERT_EQ(std::memcmp(a[k].T_w_b.p.data(), b[k].T_w_b.p.data(), 3 * sizeof(double)), 0) << "frame " << k;
-    ASSERT_EQ(std::memcmp(a[k].T_w_b.q.coeffs().data(), b[k].T_w_b.q.coeffs().data(), 4 * sizeof(double)), 0);
+    ASSERT_EQ(a[k].T_w_b.p, b[k].T_w_b.p) << "frame " << k;
+    ASSERT_EQ(a[k].T_w_b.q.coeffs(), b[k].T_w_b.q.coeffs());
     ASSERT_EQ(a[k].points.size(), b[k].points.size());
     for (std::size_t i = 0; i < a[k].points.size(); ++i) ASSERT_EQ(a[k].points[i].p_w, b[k].points[i].p_w);
     ASSERT_EQ(a[k].lines.size(), b[k].lines.size());

@@ -3,7 +3,6 @@
 
 #include <gtest/gtest.h>
 
-#include <cstring>
 
 #include "lintel/geometry/Alignment.h"
 #include "lintel/geometry/Rotation.h"
@@ -310,7 +309,7 @@ TEST_F(BatchRefinementTest, TheSameBitsEveryTime) {
   refine(other);
   ASSERT_EQ(material_.keyframes.size(), other.keyframes.size());
   for (std::size_t i = 0; i < material_.keyframes.size(); ++i) {
-    EXPECT_EQ(std::memcmp(material_.keyframes[i].T_w_b.p.data(), other.keyframes[i].T_w_b.p.data(), 24), 0);
+    EXPECT_EQ(material_.keyframes[i].T_w_b.p, other.keyframes[i].T_w_b.p);
     EXPECT_EQ(material_.keyframes[i].T_w_b.q.coeffs(), other.keyframes[i].T_w_b.q.coeffs());
   }
   EXPECT_EQ(material_.rig.camera.fx, other.rig.camera.fx);

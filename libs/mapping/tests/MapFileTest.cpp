@@ -109,6 +109,7 @@ TEST_F(MapFile, EveryValueReturnsToTheBit) {
   EXPECT_EQ(back.points[3].observations[2].px, map.points[3].observations[2].px);
   EXPECT_EQ(back.points[3].first_t_ns, -5);
   EXPECT_EQ(back.points[3].sigma_distance_m, map.points[3].sigma_distance_m);
+  // NaN and -0 too
   EXPECT_EQ(std::memcmp(&back.lines[3].segment_w, &map.lines[3].segment_w, sizeof(Segment3)), 0);
   EXPECT_EQ(std::memcmp(&back.lines[4].segment_w, &map.lines[4].segment_w, sizeof(Segment3)), 0);
   EXPECT_EQ(back.lines[19].id, ~std::uint64_t{0});
