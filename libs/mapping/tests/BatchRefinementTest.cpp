@@ -3,7 +3,6 @@
 
 #include <gtest/gtest.h>
 
-
 #include "lintel/geometry/Alignment.h"
 #include "lintel/geometry/Rotation.h"
 #include "lintel/mapping/MapBuilder.h"
