@@ -5,6 +5,12 @@
 
 namespace lintel {
 
+namespace {
+
+constexpr std::size_t kSecond = 10;  // window frames
+
+}  // namespace
+
 std::string findFailure(const SlidingWindow& window, const FailureParams& params, const Pose& predicted_T_w_b) {
   const WindowFrame& newest = window.frames.back();
   const Pose T_w_b = newest.T_w_b();
@@ -20,7 +26,6 @@ std::string findFailure(const SlidingWindow& window, const FailureParams& params
 }
 
 void PlacementCheck::add(const SlidingWindow& window) {
-  constexpr std::size_t kFrames = 10;  // a second
   constexpr std::size_t kSightings = 3;
   const double parallax_rad = 5 / kReferenceFocal_px;
   const auto ray = [&](const PointSighting& s) {
@@ -34,10 +39,13 @@ void PlacementCheck::add(const SlidingWindow& window) {
     count.placed += track.triangulated;
   }
   counts_.push_back(count);
-  if (counts_.size() > kFrames) counts_.pop_front();
+  if (counts_.size() > kSecond) counts_.pop_front();
+  frames_ = mostHaveNone() ? frames_ + 1 : 0;
 }
 
-bool PlacementCheck::contradicted() const {
+bool PlacementCheck::contradicted() const { return frames_ >= static_cast<int>(kSecond); }
+
+bool PlacementCheck::mostHaveNone() const {
   constexpr int kFew = 50;              // say nothing: a moving object alone
   constexpr double kLeastPlaced = 0.5;  // in good runs, on any recording, 0.85 and more
   Count sum;

@@ -21,14 +21,17 @@ class PlacementCheck {
   /// After a solve.
   void add(const SlidingWindow& window);
 
-  /// Most of them have none, for a second.
+  /// Most of them have had none for long. (For a moment that is so when a vehicle takes off from rest.)
   bool contradicted() const;
 
  private:
+  bool mostHaveNone() const;
+
   struct Count {
     int moving = 0, placed = 0;
   };
   std::deque<Count> counts_;  // of the last window frames
+  int frames_ = 0;            // in a row after which most had none
 };
 
 }  // namespace lintel
