@@ -274,7 +274,7 @@ void Estimator::Impl::track(WindowUpdate& update) {
       biasOf(window_.frames.back().motion.data()).accel.norm() > trialBiasAccel(params_.initializer))
     failure = "it led to an implausible accelerometer bias";
   if (failure.empty() && onTrial() && scale_drift_.leftStart()) failure = "its scale is not what later images show";
-  if (failure.empty() && placement_.contradicted())
+  if (failure.empty() && placement_.contradicted(onTrial()))
     failure = "most points that move in the images have no place that fits the estimated motion";
   if (!failure.empty()) return fail(onTrial() ? Failure::kWrongStart : Failure::kDiverged, failure, update);
   if (blind_frames_ > params_.failure.max_blind_frames)

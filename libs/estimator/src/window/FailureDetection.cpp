@@ -43,7 +43,10 @@ void PlacementCheck::add(const SlidingWindow& window) {
   frames_ = mostHaveNone() ? frames_ + 1 : 0;
 }
 
-bool PlacementCheck::contradicted() const { return frames_ >= static_cast<int>(kSecond); }
+bool PlacementCheck::contradicted(bool on_trial) const {
+  constexpr int kOnTrial = 3;
+  return frames_ >= (on_trial ? kOnTrial : static_cast<int>(kSecond));
+}
 
 bool PlacementCheck::mostHaveNone() const {
   constexpr int kFew = 50;              // say nothing: a moving object alone

@@ -21,8 +21,9 @@ class PlacementCheck {
   /// After a solve.
   void add(const SlidingWindow& window);
 
-  /// Most of them have had none for long. (For a moment that is so when a vehicle takes off from rest.)
-  bool contradicted() const;
+  /// Most of them have had none for some window frames. (For one that is so when a vehicle takes off from rest.) A
+  /// start on trial is given up sooner.
+  bool contradicted(bool on_trial) const;
 
  private:
   bool mostHaveNone() const;

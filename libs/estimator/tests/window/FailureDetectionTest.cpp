@@ -65,14 +65,15 @@ PlacementCheck checkOf(int frames, int points, int placed, double step_m) {
 }
 
 TEST(PlacementCheck, PointsThatMoveAndHaveNoPlaceContradictTheMotion) {
-  EXPECT_TRUE(checkOf(20, 10, 4, 0.1).contradicted());
-  EXPECT_FALSE(checkOf(20, 10, 6, 0.1).contradicted());
-  EXPECT_FALSE(checkOf(10, 10, 4, 0.1).contradicted()) << "as when a vehicle takes off";
+  EXPECT_TRUE(checkOf(20, 10, 4, 0.1).contradicted(false));
+  EXPECT_FALSE(checkOf(20, 10, 6, 0.1).contradicted(false));
+  EXPECT_FALSE(checkOf(10, 10, 4, 0.1).contradicted(false)) << "as when a vehicle takes off";
+  EXPECT_TRUE(checkOf(12, 10, 4, 0.1).contradicted(true));
 }
 
-TEST(PlacementCheck, AFewSayNothing) { EXPECT_FALSE(checkOf(20, 4, 0, 0.1).contradicted()); }
+TEST(PlacementCheck, AFewSayNothing) { EXPECT_FALSE(checkOf(20, 4, 0, 0.1).contradicted(true)); }
 
-TEST(PlacementCheck, PointsWithoutParallaxNeedNoPlace) { EXPECT_FALSE(checkOf(20, 10, 0, 0.01).contradicted()); }
+TEST(PlacementCheck, PointsWithoutParallaxNeedNoPlace) { EXPECT_FALSE(checkOf(20, 10, 0, 0.01).contradicted(true)); }
 
 }  // namespace
 }  // namespace lintel
