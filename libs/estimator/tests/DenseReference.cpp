@@ -93,7 +93,8 @@ void addTrack(const SlidingWindow& window, const std::vector<const Factor*>& fac
   Eigen::VectorXd all_r(count * rows), r, weights;
   for (Eigen::Index i = 0; i < count; ++i) {
     const auto at = static_cast<std::size_t>(i);
-    t_s.push_back(1e-9 * static_cast<double>(window.frame(factors[at]->blocks.front().id).t_ns));
+    t_s.push_back(1e-9 *
+                  static_cast<double>(window.frame(factors[at]->blocks.front().id).t_ns - window.frames.front().t_ns));
     all_r.segment(rows * i, rows) = sightings[at].residual;
     all_J.middleRows(rows * i, rows) = sightings[at].jacobian;
   }

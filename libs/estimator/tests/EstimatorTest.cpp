@@ -422,7 +422,6 @@ std::vector<std::pair<std::int64_t, Pose>> trajectoryOf(const std::vector<Window
   return poses;
 }
 
-// With the default noise of tracks this start is not found out (doc/method/points.md).
 TEST(Estimator, AWrongStartIsWithdrawnAndReplacedWithoutAGap) {
   const std::size_t wrong = 36;
   const TrackedFlight flight = withSlowStart(fly(ImuSimulatorParams{}, tracksFor(9, 0.3)), wrong, 3);

@@ -20,8 +20,8 @@ struct Factor {
   const ceres::CostFunction* cost = nullptr;
   const ceres::LossFunction* loss = nullptr;
   std::vector<BlockKey> blocks;
-  const TrackNoise* noise =
-      &kWhiteNoise;  ///< of an image's residuals with a point or a line; the same in all of a track
+  /// Of an image's residuals with a point or a line; the same in all of a track.
+  const TrackNoise* noise = &kWhiteNoise;
 };
 
 /// The manifold of a kind of block; shared, stateless.

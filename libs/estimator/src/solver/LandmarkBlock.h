@@ -16,10 +16,10 @@ namespace lintel {
 
 /// A point or a line that is eliminated: its residuals, its part of the normal equations, and its last elimination.
 ///
-/// The errors of its sightings are correlated (TrackNoise), by which of the kinds is chosen with the residuals of the
-/// first linearisation. With r the residuals of all, whitened ones are L^-1 r; the
-/// loss counts for each of these, the track's for their sum. In the normal equations sightings i and j then meet with
-/// the weight in row i and column j of the information L^-T diag(weights) L^-1.
+/// The errors of its sightings are correlated (TrackNoise); by which kind of noise, the residuals of the first
+/// linearisation decide. With r the residuals of all, whitened ones are L^-1 r; the loss counts for each of these, the
+/// track's for their sum. In the normal equations sightings i and j then meet with the weight in row i and column j of
+/// the information L^-T diag(weights) L^-1.
 template <class Target>
 struct LandmarkBlock {
   static constexpr int T = Target::kTangent, kSize = Target::kSize;

@@ -50,7 +50,7 @@ bool PlacementCheck::contradicted(bool on_trial) const {
 
 bool PlacementCheck::mostHaveNone() const {
   constexpr int kFew = 50;              // say nothing: a moving object alone
-  constexpr double kLeastPlaced = 0.5;  // in good runs, on any recording, 0.85 and more
+  constexpr double kLeastPlaced = 0.5;  // in good runs 0.85 and more, but for the moment of a take-off
   Count sum;
   for (const Count& count : counts_) {
     sum.moving += count.moving;

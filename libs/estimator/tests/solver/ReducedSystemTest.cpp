@@ -77,11 +77,10 @@ TEST_F(ReducedSystemTest, EqualsTheSchurComplementOfTheDenseSystem) {
   const NormalEquations reduced = system.eliminate();
   ASSERT_EQ(reduced.blocks, dense.blocks);
   const Eigen::VectorXd scale = H.diagonal().cwiseSqrt();
-  // with white noise they agree to 1e-7, with correlated tracks not everywhere
   for (Eigen::Index i = 0; i < n; ++i) {
-    EXPECT_NEAR(reduced.b[i], b[i], 1e-6 * scale[i] * b.cwiseQuotient(scale).norm()) << i;
+    EXPECT_NEAR(reduced.b[i], b[i], 1e-7 * scale[i] * b.cwiseQuotient(scale).norm()) << i;
     for (Eigen::Index j = 0; j < n; ++j)
-      EXPECT_NEAR(reduced.H(i, j), H(i, j), 1e-6 * scale[i] * scale[j]) << i << " " << j;
+      EXPECT_NEAR(reduced.H(i, j), H(i, j), 1e-7 * scale[i] * scale[j]) << i << " " << j;
   }
 }
 

@@ -99,24 +99,29 @@ TEST_F(WindowCovarianceTest, IsThatOfTheWholeProblemWithTheFirstPoseHeld) {
 }
 
 TEST_F(WindowCovarianceTest, ScaleIsKnownAsTheLongestDistanceIs) {
-  const FactorParams params = forWhiteNoise().factors;
-  WindowFactors factors(window_, params);
+  WindowFactors factors(window_, kParams.factors);
   addAll(factors);
   const double sigma = covariance(factors.factors()).relativeScaleSigma(window_);
   factors.addGauge();
   const NormalEquations eq = linearise(window_, factors.factors(), {});
   const Eigen::MatrixXd covariance = solved(eq.H, Eigen::MatrixXd::Identity(eq.H.rows(), eq.H.cols()));
+  const auto offsetOf = [&](const WindowFrame& frame) {
+    const auto place = std::find(eq.blocks.begin(), eq.blocks.end(), BlockKey{BlockKey::kPose, frame.id});
+    return eq.offsets[static_cast<std::size_t>(place - eq.blocks.begin())];
+  };
   const Eigen::Vector3d oldest = window_.frames.front().T_w_b().p;
+  const Eigen::Index from = offsetOf(window_.frames.front());
   double longest = 0, expected = 0;
   for (const WindowFrame& frame : window_.frames) {
     const Eigen::Vector3d way = frame.T_w_b().p - oldest;
     if (way.norm() <= longest) continue;
     longest = way.norm();
-    const auto place = std::find(eq.blocks.begin(), eq.blocks.end(), BlockKey{BlockKey::kPose, frame.id});
-    const Eigen::Index at = eq.offsets[static_cast<std::size_t>(place - eq.blocks.begin())];
-    expected = std::sqrt(way.dot(covariance.block<3, 3>(at, at) * way)) / way.squaredNorm();
+    const Eigen::Index at = offsetOf(frame);
+    const Eigen::Matrix3d difference = covariance.block<3, 3>(at, at) + covariance.block<3, 3>(from, from) -
+                                       covariance.block<3, 3>(at, from) - covariance.block<3, 3>(from, at);
+    expected = std::sqrt(way.dot(difference * way)) / way.squaredNorm();
   }
-  EXPECT_NEAR(sigma, expected, 0.01 * expected);
+  EXPECT_NEAR(sigma, expected, 1e-5 * expected);
 }
 
 TEST_F(WindowCovarianceTest, AtRestNoScaleIsKnown) {
