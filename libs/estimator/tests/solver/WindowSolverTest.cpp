@@ -119,7 +119,7 @@ double statesApart(SlidingWindow& window, const SlidingWindow& other, const std:
 }
 
 TEST(WindowSolver, StatesHaveSettledBeforeTheLandmarks) {
-  const FactorParams params = forWhiteNoise().factors;
+  const FactorParams params = kParams.factors;
   SlidingWindow window = disturbedWindow();
   const WindowFactors before = everything(window, params);
   solveWindow(window, before.factors(), kParams.calibration, {50});
