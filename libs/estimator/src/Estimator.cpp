@@ -303,9 +303,9 @@ void Estimator::Impl::solve(WindowUpdate& update) {
   scale_drift_.afterSolve(window_);
   rejectOutliers(window_, params_.landmarks);
   placement_.add(window_);
-  for (auto& [id, track] : window_.lines)
-    if (entersProblem(track, params_.degeneracy)) updateLineUncertainty(window_, params_, track);
   const CameraPoses poses(window_);
+  for (auto& [id, track] : window_.lines)
+    if (entersProblem(track, params_.degeneracy)) updateLineUncertainty(poses, params_, track);
   for (auto& [id, track] : window_.points)
     if (track.triangulated) updatePointUncertainty(poses, params_.factors.point_sigma_px, track);
   for (std::size_t i = 1; i < window_.frames.size(); ++i) {

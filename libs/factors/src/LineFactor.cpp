@@ -8,16 +8,16 @@
 
 namespace lintel {
 
-void LineFactor::linearise(const CameraView& view, const double* correction, const double* line_block, bool jacobians,
-                           LineLinearisation& out) const {
+void LineResidual::linearise(const CameraView& view, const double* correction, const double* line_block, bool jacobians,
+                             LineLinearisation& out) const {
   const OrthonormalLine line = lineFromBlock(line_block);
   const Eigen::Matrix3d U = line.U.toRotationMatrix();
   const double cosine = std::cos(line.phi), sine = std::sin(line.phi);
-  const Eigen::Vector3d n_w = cosine * U.col(0), d_w = sine * U.col(1), from_camera_w = origin_w_ - view.p_w_c;
+  const Eigen::Vector3d n_w = cosine * U.col(0), d_w = sine * U.col(1), from_camera_w = origin_w - view.p_w_c;
   const Eigen::Vector3d l = view.R_c_w * (n_w + from_camera_w.cross(d_w));  // moment about the camera, its axes
-  const Eigen::Vector3d ends[2] = {start_.corrected(correction), end_.corrected(correction)};
-  const LineDistances distances(ends, l, 1, start_.wide);
-  const Eigen::Vector2d scale = weight_ * Eigen::Vector2d(start_.scale_px(correction), end_.scale_px(correction));
+  const Eigen::Vector3d ends[2] = {start.corrected(correction), end.corrected(correction)};
+  const LineDistances distances(ends, l, 1, start.wide);
+  const Eigen::Vector2d scale = weight * Eigen::Vector2d(start.scale_px(correction), end.scale_px(correction));
   out.residual = scale.cwiseProduct(distances.residual);
   if (!jacobians) return;
 
@@ -26,10 +26,10 @@ void LineFactor::linearise(const CameraView& view, const double* correction, con
   const Eigen::Matrix<double, 2, 3> d_nw = d_l * view.R_c_w;
   out.d_camera.leftCols<3>() = d_nw * skew(d_w);
   out.d_camera.rightCols<3>() = d_l * skew(l);
-  const LineEnd* seen[] = {&start_, &end_};
+  const LineEnd* seen[] = {&start, &end};
   for (int k = 0; k < 2; ++k) {
     out.d_correction.row(k).head<kIntrinsicsSize>() = seen[k]->alongJacobian(scale[k] * distances.normal) +
-                                                      weight_ * seen[k]->linearised_scale_px * distances.residual[k] *
+                                                      weight * seen[k]->linearised_scale_px * distances.residual[k] *
                                                           seen[k]->log_scale_jacobian.leftCols<kIntrinsicsSize>();
     out.d_correction(k, kReadoutAt) = 0;  // points tell the readout: Unroller moves ends of lines by it
   }

@@ -11,6 +11,19 @@
 namespace lintel {
 namespace {
 
+using ByRows = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+
+ByRows whitened(const NoiseKind& kind, const std::vector<double>& t_s, ByRows errors) {
+  Whitener(kind, t_s).whiten(errors.data(), static_cast<int>(errors.cols()));
+  return errors;
+}
+
+/// L^-1 itself.
+Eigen::MatrixXd whitener(const NoiseKind& kind, const std::vector<double>& t_s) {
+  const auto n = static_cast<Eigen::Index>(t_s.size());
+  return whitened(kind, t_s, ByRows::Identity(n, n));
+}
+
 TEST(TrackNoise, WhiteNoiseIsOnlyScaled) {
   EXPECT_EQ(whitener({0.5, 0}, {0, 0.1, 0.7}), 2 * Eigen::Matrix3d::Identity());
 }
@@ -34,10 +47,25 @@ TEST(TrackNoise, WhitenedErrorsAreIndependentAndOfUnitVariance) {
   const Eigen::MatrixXd W = whitener(noise, t_s);
   EXPECT_TRUE((W * covariance * W.transpose()).isIdentity(1e-12));
   EXPECT_TRUE(W.isLowerTriangular());
-  Eigen::MatrixXd errors = Eigen::MatrixXd::Random(5, 2);
-  const Eigen::MatrixXd expected = W * errors;
-  EXPECT_NEAR(whiten(noise, t_s, errors), 0.5 * std::log(covariance.determinant()), 1e-12);
-  EXPECT_TRUE(errors.isApprox(expected, 1e-12));
+  EXPECT_NEAR(Whitener(noise, t_s).logDeterminant(), 0.5 * std::log(covariance.determinant()), 1e-12);
+}
+
+TEST(TrackNoise, PassesOverRowsAreProductsWithTheMatrix) {
+  const NoiseKind noise{0.3, 0.8};
+  const std::vector<double> t_s = {0.2, 0.3, 0.7, 1.9, 2.0};
+  const Eigen::MatrixXd W = whitener(noise, t_s);
+  for (const int columns : {1, 2, 5, 8, 24}) {
+    const ByRows rows = ByRows::Random(5, columns);
+    EXPECT_TRUE(whitened(noise, t_s, rows).isApprox(W * rows, 1e-12)) << columns;
+    ByRows transposed = rows;
+    Whitener(noise, t_s).whitenTransposed(transposed.data(), columns);
+    EXPECT_TRUE(transposed.isApprox(W.transpose() * rows, 1e-12)) << columns;
+  }
+  const Eigen::VectorXd weights = Eigen::VectorXd::Random(5).cwiseAbs();
+  std::vector<double> information;
+  Whitener(noise, t_s).information(weights.data(), information);
+  ASSERT_EQ(information.size(), 25u);
+  EXPECT_TRUE(ByRows::Map(information.data(), 5, 5).isApprox(W.transpose() * weights.asDiagonal() * W, 1e-12));
 }
 
 TEST(TrackNoise, KindsDifferByTheirWalk) {
@@ -69,9 +97,7 @@ TEST(TrackNoise, TheKindIsFoundInATracksErrors) {
       }
       std::vector<double> costs;
       for (const NoiseKind& kind : kinds) {
-        Eigen::MatrixXd whitened = errors;
-        const double log_det = whiten(kind, t_s, whitened);
-        costs.push_back(0.5 * whitened.squaredNorm() + 2 * log_det);
+        costs.push_back(0.5 * whitened(kind, t_s, errors).squaredNorm() + 2 * Whitener(kind, t_s).logDeterminant());
       }
       found += std::min_element(costs.begin(), costs.end()) - costs.begin() == static_cast<std::ptrdiff_t>(truth);
     }

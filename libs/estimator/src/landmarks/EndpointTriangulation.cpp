@@ -23,14 +23,14 @@ struct SeenPoint {
   double sigma_m = 0;  // along the newest ray
 };
 
-SeenPoint triangulateEnd(const SlidingWindow& window, const LineTrack& track, bool start) {
+SeenPoint triangulateEnd(const CameraPoses& poses, const LineTrack& track, bool start) {
   Eigen::Matrix3d A = Eigen::Matrix3d::Zero();  // the point nearest to all rays
   Eigen::Vector3d b = Eigen::Vector3d::Zero();
   std::vector<std::pair<Pose, Eigen::Vector3d>> views;
   for (const LineSighting& s : track.sightings) {
-    if (!window.camera().contains(start ? s.start_px : s.end_px, kBorder_px)) continue;
-    const Pose T_w_c = window.T_w_c(window.frame(s.frame));
-    const Eigen::Vector3d seen = (start ? s.start : s.end).corrected(window.correction.data());
+    if (!poses.camera().contains(start ? s.start_px : s.end_px, kBorder_px)) continue;
+    const Pose T_w_c = poses.T_w_c(s.frame);
+    const Eigen::Vector3d seen = (start ? s.start : s.end).corrected(poses.correction());
     const Eigen::Vector3d ray = T_w_c.q * seen.normalized();
     const Eigen::Matrix3d across = Eigen::Matrix3d::Identity() - ray * ray.transpose();
     A += across;
@@ -43,10 +43,10 @@ SeenPoint triangulateEnd(const SlidingWindow& window, const LineTrack& track, bo
   double sum = 0;
   for (const auto& [T_w_c, seen] : views) {
     const Eigen::Vector3d p_c = T_w_c.inverse() * p_w;
-    if (window.camera().depth(p_c, seen) < 0.05) return {EndsVerdict::kTooEarly};
-    sum += (window.camera().rayTo(p_c) - seen).squaredNorm();
+    if (poses.camera().depth(p_c, seen) < 0.05) return {EndsVerdict::kTooEarly};
+    sum += (poses.camera().rayTo(p_c) - seen).squaredNorm();
   }
-  const double focal = window.camera().meanFocal();
+  const double focal = poses.camera().meanFocal();
   if (std::sqrt(sum / static_cast<double>(views.size())) * focal > kMaxError_px) return {};
   const Eigen::Vector3d newest = p_w - views.back().first.p;
   const double depth = newest.norm(), sigma_m = kSigmaAlong_px / focal * depth;  // of the point across a ray
@@ -59,9 +59,9 @@ SeenPoint triangulateEnd(const SlidingWindow& window, const LineTrack& track, bo
 
 }  // namespace
 
-SeenEnds triangulateEnds(const SlidingWindow& window, const LineTrack& track) {
+SeenEnds triangulateEnds(const CameraPoses& poses, const LineTrack& track) {
   SeenEnds ends;
-  const SeenPoint start = triangulateEnd(window, track, true), end = triangulateEnd(window, track, false);
+  const SeenPoint start = triangulateEnd(poses, track, true), end = triangulateEnd(poses, track, false);
   ends.verdict = std::min(start.verdict, end.verdict);
   const double length = (end.p_w - start.p_w).norm();
   if (ends.verdict != EndsVerdict::kCorners || length < 1e-3) return ends;

@@ -3,7 +3,7 @@
 
 #include <Eigen/Core>
 
-#include "lintel/estimator/SlidingWindow.h"
+#include "landmarks/CameraPoses.h"
 
 namespace lintel {
 
@@ -23,6 +23,6 @@ struct SeenEnds {
 };
 
 /// Triangulates both end points of a track as points: what moves along a line shows its depth.
-SeenEnds triangulateEnds(const SlidingWindow& window, const LineTrack& track);
+SeenEnds triangulateEnds(const CameraPoses& poses, const LineTrack& track);
 
 }  // namespace lintel

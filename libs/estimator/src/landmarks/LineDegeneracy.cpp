@@ -20,34 +20,34 @@ LineUncertainty uncertaintyOf(const OrthonormalLine& line, const Eigen::Matrix4d
           worstSigma(position * covariance * position.transpose())};
 }
 
-double planeSigma(const SlidingWindow& window, const FactorParams& params, const LineSighting& s,
+double planeSigma(const CameraPoses& poses, const FactorParams& params, const LineSighting& s,
                   const Eigen::Vector3d& d_w) {
-  const Eigen::Vector3d d_c = window.T_w_c(window.frame(s.frame)).q.conjugate() * d_w;
-  const Eigen::Vector3d start = s.start.corrected(window.correction.data()).normalized();
-  const Eigen::Vector3d end = s.end.corrected(window.correction.data()).normalized();
+  const Eigen::Vector3d d_c = poses.T_w_c(s.frame).q.conjugate() * d_w;
+  const Eigen::Vector3d start = s.start.corrected(poses.correction()).normalized();
+  const Eigen::Vector3d end = s.end.corrected(poses.correction()).normalized();
   // each end moves across the line by sigma: the plane turns about the other one
-  const double sigma_ray = params.line_sigma_px * s.sigma_px / window.camera().meanFocal();
+  const double sigma_ray = params.line_sigma_px * s.sigma_px / poses.camera().meanFocal();
   return sigma_ray * std::hypot(start.cross(d_c).norm(), end.cross(d_c).norm()) /
          std::max(start.cross(end).norm(), 1e-6);
 }
 
-double epipoleAngle(const SlidingWindow& window, const LineTrack& track) {
+double epipoleAngle(const CameraPoses& poses, const LineTrack& track) {
   const LineSighting& newest = track.sightings.back();
-  const Pose T_w_c = window.T_w_c(window.frame(newest.frame));
+  const Pose T_w_c = poses.T_w_c(newest.frame);
   Eigen::Vector3d baseline_w = Eigen::Vector3d::Zero();
   for (const LineSighting& s : track.sightings) {
-    const Eigen::Vector3d way_w = window.T_w_c(window.frame(s.frame)).p - T_w_c.p;
+    const Eigen::Vector3d way_w = poses.T_w_c(s.frame).p - T_w_c.p;
     if (way_w.norm() > baseline_w.norm()) baseline_w = way_w;
   }
   const Eigen::Vector3d n_c =
-      newest.start.corrected(window.correction.data()).cross(newest.end.corrected(window.correction.data()));
+      newest.start.corrected(poses.correction()).cross(newest.end.corrected(poses.correction()));
   const double sine = (T_w_c.q * n_c).dot(baseline_w) / std::max(n_c.norm() * baseline_w.norm(), 1e-12);
   return std::asin(std::min(1.0, std::abs(sine)));
 }
 
-LineVerdict judgeLine(const SlidingWindow& window, const DegeneracyParams& params, const LineTrack& track,
+LineVerdict judgeLine(const CameraPoses& poses, const DegeneracyParams& params, const LineTrack& track,
                       double depth_m) {
-  if (params.test != "observability" && epipoleAngle(window, track) < params.max_epipole_angle_rad)
+  if (params.test != "observability" && epipoleAngle(poses, track) < params.max_epipole_angle_rad)
     return LineVerdict::kThroughEpipole;
   if (params.test == "epipole") return LineVerdict::kGood;
   if (track.sigma_direction_rad > params.max_sigma_direction_rad) return LineVerdict::kDirectionUnknown;

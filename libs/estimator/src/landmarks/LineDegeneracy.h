@@ -3,8 +3,8 @@
 
 #include <Eigen/Core>
 
+#include "landmarks/CameraPoses.h"
 #include "lintel/estimator/EstimatorParams.h"
-#include "lintel/estimator/SlidingWindow.h"
 #include "lintel/geometry/PluckerLine.h"
 
 namespace lintel {
@@ -20,18 +20,17 @@ struct LineUncertainty {
 LineUncertainty uncertaintyOf(const OrthonormalLine& line, const Eigen::Matrix4d& information, double along_m);
 
 /// Standard deviation of the angle between a sighting's observation plane and a direction [rad].
-double planeSigma(const SlidingWindow& window, const FactorParams& params, const LineSighting& sighting,
+double planeSigma(const CameraPoses& poses, const FactorParams& params, const LineSighting& sighting,
                   const Eigen::Vector3d& d_w);
 
 /// The epipole test of two views ([Lim2021] eq. epipole): the newest camera and, of those that saw the line, the one
 /// farthest from it. The angle between the line's plane in the newest one and the way between the two [rad]: zero when
 /// the line's image passes the epipole, and when all cameras are in one place.
-double epipoleAngle(const SlidingWindow& window, const LineTrack& track);
+double epipoleAngle(const CameraPoses& poses, const LineTrack& track);
 
 /// Whether a triangulated line whose sigmas are up to date is degenerate, and why; `depth_m`: of its middle in the
 /// newest sighting.
-LineVerdict judgeLine(const SlidingWindow& window, const DegeneracyParams& params, const LineTrack& track,
-                      double depth_m);
+LineVerdict judgeLine(const CameraPoses& poses, const DegeneracyParams& params, const LineTrack& track, double depth_m);
 
 /// Whether a line is part of the problem: well-determined ones, and degenerate ones as `params.lines` says.
 bool entersProblem(const LineTrack& track, const DegeneracyParams& params);

@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <deque>
 #include <limits>
 #include <vector>
 
@@ -22,28 +21,23 @@ struct KnownDirection {
   double sigma_rad;
 };
 
-CameraView viewOf(const SlidingWindow& window, FrameId id) {
-  const WindowFrame& frame = window.frame(id);
-  return {frame.pose.data(), window.extrinsics.data(), window.correction.data(), frame.bodyMotion(), false};
-}
-
-/// The residuals of one line, poses and calibration fixed.
+/// The residuals of one line, poses and calibration fixed. The poses must outlive them.
 class LineResiduals {
  public:
-  LineResiduals(const SlidingWindow& window, const FactorParams& params, const LineTrack& track)
-      : correction_(window.correction.data()), loss_(params.line_loss_width) {
-    for (const LineSighting& s : track.sightings) {
-      factors_.emplace_back(s.start, s.end, FrameMotion{}, track.origin_w, params.line_sigma_px * s.sigma_px);
-      views_.push_back(viewOf(window, s.frame));
-    }
+  LineResiduals(const CameraPoses& poses, const FactorParams& params, const LineTrack& track)
+      : correction_(poses.correction()), loss_(params.line_loss_width) {
+    factors_.reserve(track.sightings.size());
+    for (const LineSighting& s : track.sightings)
+      factors_.push_back(
+          {{s.start, s.end, track.origin_w, 1 / (params.line_sigma_px * s.sigma_px)}, poses.view(s.frame)});
   }
 
   /// Normal equations of the line.
   NormalEquations4 linearise(const LineBlock& line) const {
     NormalEquations4 normal;
     LineLinearisation l;
-    for (std::size_t i = 0; i < factors_.size(); ++i) {
-      factors_[i].linearise(views_[i], correction_, line.data(), true, l);
+    for (const Factor& factor : factors_) {
+      factor.residual.linearise(factor.view, correction_, line.data(), true, l);
       double rho[3];
       loss_.Evaluate(l.residual.squaredNorm(), rho);
       normal.add(l.d_target, l.residual, rho[1]);
@@ -70,10 +64,13 @@ class LineResiduals {
   }
 
  private:
+  struct Factor {
+    LineResidual residual;
+    const CameraView& view;
+  };
   const double* correction_;
   ceres::CauchyLoss loss_;
-  std::deque<LineFactor> factors_;
-  std::vector<CameraView> views_;
+  std::vector<Factor> factors_;
 };
 
 void refine(const LineResiduals& residuals, LineTrack& track, const KnownDirection* known = nullptr) {
@@ -95,17 +92,16 @@ void refine(const LineResiduals& residuals, LineTrack& track, const KnownDirecti
 }
 
 /// The ends of a sighting on the line, in the camera's frame. How many of them are in front of it.
-int endsInCamera(const SlidingWindow& window, const CameraView& view, const LineTrack& track, const LineSighting& s,
+int endsInCamera(const CameraPoses& poses, const CameraView& view, const LineTrack& track, const LineSighting& s,
                  Eigen::Vector3d ends_c[2]) {
   const PluckerLine line = lineFromBlock(track.line.data()).plucker();
   const Eigen::Vector3d d_c = view.R_c_w * line.d;
   const Eigen::Vector3d p_c = view.R_c_w * (track.origin_w + line.nearestPoint() - view.p_w_c);
   const PluckerLine line_c{p_c.cross(d_c), d_c};
-  const Eigen::Vector3d seen[2] = {s.start.corrected(window.correction.data()),
-                                   s.end.corrected(window.correction.data())};
+  const Eigen::Vector3d seen[2] = {s.start.corrected(poses.correction()), s.end.corrected(poses.correction())};
   int in_front = 0;
   for (int k = 0; k < 2; ++k)
-    in_front += closestPointToRay(line_c, seen[k], ends_c[k]) && window.camera().depth(ends_c[k], seen[k]) >= 0.05;
+    in_front += closestPointToRay(line_c, seen[k], ends_c[k]) && poses.camera().depth(ends_c[k], seen[k]) >= 0.05;
   return in_front;
 }
 
@@ -114,25 +110,25 @@ struct SeenMiddle {
   double along_m = 0, depth_m = 0;
 };
 
-SeenMiddle middleOf(const SlidingWindow& window, const LineTrack& track) {
+SeenMiddle middleOf(const CameraPoses& poses, const LineTrack& track) {
   const LineSighting& newest = track.sightings.back();
   Eigen::Vector3d ends_c[2] = {Eigen::Vector3d::UnitZ(), Eigen::Vector3d::UnitZ()};
-  const CameraView view = viewOf(window, newest.frame);
-  endsInCamera(window, view, track, newest, ends_c);
+  const CameraView& view = poses.view(newest.frame);
+  endsInCamera(poses, view, track, newest, ends_c);
   const Eigen::Vector3d middle_w = view.R_c_w.transpose() * (0.5 * (ends_c[0] + ends_c[1])) + view.p_w_c;
   const Eigen::Vector3d d_w = lineFromBlock(track.line.data()).plucker().d.normalized();
   const double depth_m =
-      window.camera().wide() ? (0.5 * (ends_c[0] + ends_c[1])).norm() : 0.5 * (ends_c[0].z() + ends_c[1].z());
+      poses.camera().wide() ? (0.5 * (ends_c[0] + ends_c[1])).norm() : 0.5 * (ends_c[0].z() + ends_c[1].z());
   return {(middle_w - track.origin_w).dot(d_w), std::max(depth_m, 0.1)};
 }
 
 /// Start from all observation planes, abreast of `track.origin_w`.
-bool startFromPlanes(const SlidingWindow& window, LineTrack& track) {
+bool startFromPlanes(const CameraPoses& poses, LineTrack& track) {
   std::vector<ObservationPlane> planes;
   for (const LineSighting& s : track.sightings) {
-    const Pose T_w_c = window.T_w_c(window.frame(s.frame));
-    const Eigen::Vector3d start = s.start.corrected(window.correction.data());
-    const Eigen::Vector3d end = s.end.corrected(window.correction.data());
+    const Pose T_w_c = poses.T_w_c(s.frame);
+    const Eigen::Vector3d start = s.start.corrected(poses.correction());
+    const Eigen::Vector3d end = s.end.corrected(poses.correction());
     const Eigen::Vector3d cross = start.cross(end);
     if (cross.norm() < 1e-6) return false;
     planes.push_back({T_w_c.q * cross.normalized(), T_w_c.p});
@@ -145,14 +141,14 @@ bool startFromPlanes(const SlidingWindow& window, LineTrack& track) {
 }
 
 /// Sigmas and verdict of a line.
-void judgeBy(const LineResiduals& residuals, const SlidingWindow& window, const EstimatorParams& params,
+void judgeBy(const LineResiduals& residuals, const CameraPoses& poses, const EstimatorParams& params,
              LineTrack& track) {
-  const SeenMiddle middle = middleOf(window, track);
+  const SeenMiddle middle = middleOf(poses, track);
   const LineUncertainty uncertainty =
       uncertaintyOf(lineFromBlock(track.line.data()), residuals.linearise(track.line).H, middle.along_m);
   track.sigma_direction_rad = uncertainty.direction_rad;
   track.sigma_distance_m = uncertainty.distance_m;
-  track.verdict = judgeLine(window, params.degeneracy, track, middle.depth_m);
+  track.verdict = judgeLine(poses, params.degeneracy, track, middle.depth_m);
 }
 
 }  // namespace
@@ -161,58 +157,57 @@ PluckerLine lineInWorld(const LineTrack& track) {
   return movedOrigin(lineFromBlock(track.line.data()).plucker(), -track.origin_w);
 }
 
-double lineError(const SlidingWindow& window, const LineTrack& track) {
+double lineError(const CameraPoses& poses, const LineTrack& track) {
   double sum = 0;
   Eigen::Vector3d ends[2];
   // a line along the motion may end in its own vanishing point, where noise decides what is in front
   const int least_in_front = track.group != 0 ? 1 : 2;
   for (const LineSighting& s : track.sightings) {
-    const CameraView view = viewOf(window, s.frame);
-    if (endsInCamera(window, view, track, s, ends) < least_in_front) return std::numeric_limits<double>::infinity();
+    const CameraView& view = poses.view(s.frame);
+    if (endsInCamera(poses, view, track, s, ends) < least_in_front) return std::numeric_limits<double>::infinity();
     LineLinearisation l;
-    LineFactor(s.start, s.end, FrameMotion{}, track.origin_w, 1)
-        .linearise(view, window.correction.data(), track.line.data(), false, l);
+    LineResidual{s.start, s.end, track.origin_w, 1}.linearise(view, poses.correction(), track.line.data(), false, l);
     sum += 0.5 * l.residual.cwiseAbs().sum();
   }
   return track.sightings.empty() ? 0 : sum / static_cast<double>(track.sightings.size());
 }
 
-void updateLineUncertainty(const SlidingWindow& window, const EstimatorParams& params, LineTrack& track) {
+void updateLineUncertainty(const CameraPoses& poses, const EstimatorParams& params, LineTrack& track) {
   // after marginalisation has used its sightings a line keeps its last estimate
   if (!track.distance_known) return;
   if (track.verdict != LineVerdict::kNone &&
       static_cast<int>(track.sightings.size()) < params.landmarks.line_min_observations)
     return;
-  judgeBy(LineResiduals(window, params.factors, track), window, params, track);
+  judgeBy(LineResiduals(poses, params.factors, track), poses, params, track);
 }
 
-bool triangulateLine(const SlidingWindow& window, const EstimatorParams& params, LineTrack& track) {
+bool triangulateLine(const CameraPoses& poses, const EstimatorParams& params, LineTrack& track) {
   track.triangulated = false;
   track.verdict = LineVerdict::kNone;
   if (track.sightings.size() < 2) return false;
-  track.origin_w = window.T_w_c(window.frame(track.sightings.back().frame)).p;
-  if (!startFromPlanes(window, track)) {
+  track.origin_w = poses.T_w_c(track.sightings.back().frame).p;
+  if (!startFromPlanes(poses, track)) {
     track.verdict = LineVerdict::kDirectionUnknown;
     track.sigma_direction_rad = track.sigma_distance_m = std::numeric_limits<double>::infinity();
     return false;
   }
   // A line that is far from being determined is not worth refining: its approximate sigmas show that already.
-  const LineResiduals residuals(window, params.factors, track);
-  judgeBy(residuals, window, params, track);
+  const LineResiduals residuals(poses, params.factors, track);
+  judgeBy(residuals, poses, params, track);
   constexpr double kFarAbove = 3;  // times the limit: the approximation is wrong by less
   if (track.sigma_direction_rad > kFarAbove * params.degeneracy.max_sigma_direction_rad)
     return track.triangulated = true;
   refine(residuals, track);
-  if (!(lineError(window, track) < params.landmarks.line_max_error_px)) {
+  if (!(lineError(poses, track) < params.landmarks.line_max_error_px)) {
     if (!track.degenerate()) track.verdict = LineVerdict::kNone;  // an outlier, unless it is degenerate
     return track.triangulated = track.degenerate() && params.degeneracy.lines == "use";
   }
   track.triangulated = true;
-  judgeBy(residuals, window, params, track);
+  judgeBy(residuals, poses, params, track);
   return true;
 }
 
-bool triangulateTied(const SlidingWindow& window, const EstimatorParams& params, LineTrack& track,
+bool triangulateTied(const CameraPoses& poses, const EstimatorParams& params, LineTrack& track,
                      const Eigen::Vector3d& d_w) {
   // Of the depth. A distance known worse than that follows the noise of the direction, and biases the poses: in
   // the scene of rails the trajectory was 17 % worse than without them at 1, 3 % at 0.05. Beyond, only the direction
@@ -220,11 +215,11 @@ bool triangulateTied(const SlidingWindow& window, const EstimatorParams& params,
   constexpr double kMaxRelativeSigma = 0.05;
   const KnownDirection known{d_w, params.degeneracy.structural_sigma_rad};
   LineTrack tied = track;
-  const LineResiduals residuals(window, params.factors, tied);
+  const LineResiduals residuals(poses, params.factors, tied);
   refine(residuals, tied, &known);
-  if (!(lineError(window, tied) < params.landmarks.line_max_error_px)) return false;
+  if (!(lineError(poses, tied) < params.landmarks.line_max_error_px)) return false;
   const NormalEquations4 normal = residuals.linearise(tied.line, known);
-  const SeenMiddle middle = middleOf(window, tied);
+  const SeenMiddle middle = middleOf(poses, tied);
   const LineUncertainty uncertainty = uncertaintyOf(lineFromBlock(tied.line.data()), normal.H, middle.along_m);
   if (uncertainty.distance_m > kMaxRelativeSigma * middle.depth_m) return false;
   tied.sigma_direction_rad = uncertainty.direction_rad;
@@ -234,10 +229,11 @@ bool triangulateTied(const SlidingWindow& window, const EstimatorParams& params,
 }
 
 void triangulateLines(SlidingWindow& window, const EstimatorParams& params) {
+  const CameraPoses poses(window);
   for (auto& [id, track] : window.lines)
     if ((!track.triangulated || (track.degenerate() && track.group == 0)) &&
         static_cast<int>(track.sightings.size()) >= params.landmarks.line_min_observations)
-      triangulateLine(window, params, track);
+      triangulateLine(poses, params, track);
 }
 
 }  // namespace lintel

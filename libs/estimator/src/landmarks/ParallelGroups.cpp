@@ -36,10 +36,10 @@ struct Rays {
   Eigen::Vector3d start_w, end_w;  // unit
 };
 
-Rays raysOf(const SlidingWindow& window, const LineSighting& s) {
-  const Eigen::Quaterniond R_w_c = window.T_w_c(window.frame(s.frame)).q;
-  return {R_w_c * s.start.corrected(window.correction.data()).normalized(),
-          R_w_c * s.end.corrected(window.correction.data()).normalized()};
+Rays raysOf(const CameraPoses& poses, const LineSighting& s) {
+  const Eigen::Quaterniond R_w_c = poses.T_w_c(s.frame).q;
+  return {R_w_c * s.start.corrected(poses.correction()).normalized(),
+          R_w_c * s.end.corrected(poses.correction()).normalized()};
 }
 
 bool isMember(const LineTrack& track) { return track.triangulated && track.group != 0; }
@@ -52,10 +52,10 @@ bool isWitness(const LineTrack& track) {
 
 /// Whether a degenerate line may have this direction: its planes contain it, and its end points do not contradict. Ends
 /// that may still do so are waited for.
-bool mayBeParallel(const SlidingWindow& window, const EstimatorParams& params, const LineTrack& track,
+bool mayBeParallel(const CameraPoses& poses, const EstimatorParams& params, const LineTrack& track,
                    const Eigen::Vector3d& d_w, double max_misfit) {
-  if (directionMisfit(window, params, track, d_w) > max_misfit) return false;
-  const SeenEnds ends = triangulateEnds(window, track);
+  if (directionMisfit(poses, params, track, d_w) > max_misfit) return false;
+  const SeenEnds ends = triangulateEnds(poses, track);
   if (ends.verdict == EndsVerdict::kTooEarly) return track.group != 0;
   if (ends.verdict == EndsVerdict::kNoCorners) return true;
   const double angle = angleBetween((ends.end_w - ends.start_w).normalized(), d_w);
@@ -71,15 +71,15 @@ double medianDepth(const SlidingWindow& window) {
 }
 
 /// Gives a line the group's direction within its newest plane, and the depth of its ends where they show one.
-void joinGroup(const SlidingWindow& window, LineTrack& track, std::uint64_t group, const Eigen::Vector3d& d_w,
+void joinGroup(const CameraPoses& poses, LineTrack& track, std::uint64_t group, const Eigen::Vector3d& d_w,
                double depth) {
   const LineSighting& newest = track.sightings.back();
-  const Rays rays = raysOf(window, newest);
-  const Pose T_w_c = window.T_w_c(window.frame(newest.frame));
+  const Rays rays = raysOf(poses, newest);
+  const Pose T_w_c = poses.T_w_c(newest.frame);
   const Eigen::Vector3d n_w = rays.start_w.cross(rays.end_w).normalized();
   const Eigen::Vector3d d = (d_w - d_w.dot(n_w) * n_w).normalized();
   Eigen::Vector3d p_w = T_w_c.p + depth * (rays.start_w + rays.end_w).normalized();
-  if (const SeenEnds ends = triangulateEnds(window, track); ends.verdict == EndsVerdict::kCorners)
+  if (const SeenEnds ends = triangulateEnds(poses, track); ends.verdict == EndsVerdict::kCorners)
     p_w = 0.5 * (ends.start_w + ends.end_w);
   track.origin_w = T_w_c.p;
   track.line = toBlock(toOrthonormal(movedOrigin(lineThrough(p_w, p_w + d), track.origin_w)));
@@ -91,56 +91,56 @@ void joinGroup(const SlidingWindow& window, LineTrack& track, std::uint64_t grou
 }
 
 /// Whether the direction of a line is known without its group; if so the line takes that.
-bool isKnownWithoutGroup(const SlidingWindow& window, const EstimatorParams& params, LineTrack& track) {
+bool isKnownWithoutGroup(const CameraPoses& poses, const EstimatorParams& params, LineTrack& track) {
   if (track.distance_known) return !track.degenerate();
   LineTrack own = track;
   own.group = 0;
   own.distance_known = true;
-  if (!triangulateLine(window, params, own) || own.degenerate()) return false;
+  if (!triangulateLine(poses, params, own) || own.degenerate()) return false;
   track = own;
   return true;
 }
 
 /// Triangulates a member with the shared direction if its distance is not known or no longer fits its sightings.
-void triangulateMember(const SlidingWindow& window, const EstimatorParams& params, LineTrack& track, double depth) {
+void triangulateMember(const CameraPoses& poses, const EstimatorParams& params, LineTrack& track, double depth) {
   const std::uint64_t group = track.group;
-  const Eigen::Vector3d d_w = window.directions.at(group).d_w;
-  if (track.distance_known && lineError(window, track) <= params.landmarks.line_max_error_px) return;
-  joinGroup(window, track, group, d_w, depth);
-  track.distance_known = triangulateTied(window, params, track, d_w);
+  const Eigen::Vector3d d_w = poses.window().directions.at(group).d_w;
+  if (track.distance_known && lineError(poses, track) <= params.landmarks.line_max_error_px) return;
+  joinGroup(poses, track, group, d_w, depth);
+  track.distance_known = triangulateTied(poses, params, track, d_w);
 }
 
 /// Members whose sightings contradict the direction, or whose own direction is known by now, leave their group; the
 /// others are triangulated with it.
-void updateMembers(SlidingWindow& window, const EstimatorParams& params, double depth) {
+void updateMembers(SlidingWindow& window, const CameraPoses& poses, const EstimatorParams& params, double depth) {
   for (auto& [id, track] : window.lines) {
     if (track.group == 0) continue;
     if (static_cast<int>(track.sightings.size()) < params.landmarks.line_min_observations) continue;
     const bool fits =
-        mayBeParallel(window, params, track, window.directions.at(track.group).d_w, 1.5 * params.degeneracy.max_misfit);
-    if (fits && !isKnownWithoutGroup(window, params, track)) {
-      triangulateMember(window, params, track, depth);
+        mayBeParallel(poses, params, track, window.directions.at(track.group).d_w, 1.5 * params.degeneracy.max_misfit);
+    if (fits && !isKnownWithoutGroup(poses, params, track)) {
+      triangulateMember(poses, params, track, depth);
     } else {
       track.group = 0;
       track.distance_known = true;
-      triangulateLine(window, params, track);  // what it had was the group's direction, not its own
+      triangulateLine(poses, params, track);  // what it had was the group's direction, not its own
     }
   }
 }
 
 /// Degenerate lines join the group whose direction fits them best, if one does.
-void joinExisting(SlidingWindow& window, const EstimatorParams& params, double depth) {
+void joinExisting(SlidingWindow& window, const CameraPoses& poses, const EstimatorParams& params, double depth) {
   for (auto& [id, track] : window.lines) {
     if (!isCandidate(track)) continue;
     std::uint64_t best = 0;
     double least = params.degeneracy.max_misfit;
     for (const auto& [group, direction] : window.directions)
-      if (const double misfit = directionMisfit(window, params, track, direction.d_w); misfit < least) {
+      if (const double misfit = directionMisfit(poses, params, track, direction.d_w); misfit < least) {
         least = misfit;
         best = group;
       }
-    if (best != 0 && mayBeParallel(window, params, track, window.directions.at(best).d_w, params.degeneracy.max_misfit))
-      joinGroup(window, track, best, window.directions.at(best).d_w, depth);
+    if (best != 0 && mayBeParallel(poses, params, track, window.directions.at(best).d_w, params.degeneracy.max_misfit))
+      joinGroup(poses, track, best, window.directions.at(best).d_w, depth);
   }
 }
 
@@ -160,7 +160,8 @@ struct Support {
   Eigen::Vector3d d_w = Eigen::Vector3d::Zero();
 };
 
-Support supportOf(SlidingWindow& window, const EstimatorParams& params, const Eigen::Vector3d& d_w) {
+Support supportOf(SlidingWindow& window, const CameraPoses& poses, const EstimatorParams& params,
+                  const Eigen::Vector3d& d_w) {
   Support support;
   Eigen::Matrix3d normals = Eigen::Matrix3d::Zero();  // the shared direction is perpendicular to all of them
   int lines = 0;
@@ -171,13 +172,13 @@ Support supportOf(SlidingWindow& window, const EstimatorParams& params, const Ei
       support.score += 1;
       const Eigen::Vector3d d = directionOf(track);
       normals += (Eigen::Matrix3d::Identity() - d * d.transpose()) / (kKnown_rad * kKnown_rad);
-    } else if (isCandidate(track) && mayBeParallel(window, params, track, d_w, params.degeneracy.max_misfit)) {
+    } else if (isCandidate(track) && mayBeParallel(poses, params, track, d_w, params.degeneracy.max_misfit)) {
       support.score += 1;
       ++support.candidates;
       for (const LineSighting& s : track.sightings) {
-        const Rays rays = raysOf(window, s);
+        const Rays rays = raysOf(poses, s);
         const Eigen::Vector3d cross = rays.start_w.cross(rays.end_w);
-        const double sigma = std::max(kLeastSigma_rad, s.sigma_px / window.camera().meanFocal() / cross.norm());
+        const double sigma = std::max(kLeastSigma_rad, s.sigma_px / poses.camera().meanFocal() / cross.norm());
         normals += cross.normalized() * cross.normalized().transpose() / (sigma * sigma);
       }
     }
@@ -191,20 +192,20 @@ Support supportOf(SlidingWindow& window, const EstimatorParams& params, const Ei
 }
 
 /// Starts a group with the direction that most lines support, if these are enough.
-void startGroup(SlidingWindow& window, const EstimatorParams& params, double depth) {
+void startGroup(SlidingWindow& window, const CameraPoses& poses, const EstimatorParams& params, double depth) {
   Support best;
   for (const Eigen::Vector3d& d_w : possibleDirections(window)) {
     const bool is_new = std::all_of(window.directions.begin(), window.directions.end(), [&](const auto& entry) {
       return angleBetween(entry.second.d_w, d_w) > kApart_rad;
     });
     if (!is_new) continue;
-    const Support support = supportOf(window, params, d_w);
+    const Support support = supportOf(window, poses, params, d_w);
     if (support.candidates > 0 && support.score > best.score) best = support;
   }
   if (best.score < params.degeneracy.min_group) return;
   const std::uint64_t id = window.next_direction++;
   window.directions[id].d_w = best.d_w;
-  joinExisting(window, params, depth);
+  joinExisting(window, poses, params, depth);
 }
 
 /// Directions that have had no member for a while are dropped.
@@ -218,13 +219,13 @@ void dropUnusedDirections(SlidingWindow& window) {
 
 }  // namespace
 
-double directionMisfit(const SlidingWindow& window, const EstimatorParams& params, const LineTrack& track,
+double directionMisfit(const CameraPoses& poses, const EstimatorParams& params, const LineTrack& track,
                        const Eigen::Vector3d& d_w) {
   double sum = 0;
   for (const LineSighting& s : track.sightings) {
-    const Rays rays = raysOf(window, s);
+    const Rays rays = raysOf(poses, s);
     const double sine = rays.start_w.cross(rays.end_w).norm();
-    const double sigma = std::max(kLeastSigma_rad, planeSigma(window, params.factors, s, d_w));
+    const double sigma = std::max(kLeastSigma_rad, planeSigma(poses, params.factors, s, d_w));
     const double r = rays.start_w.cross(rays.end_w).dot(d_w) / std::max(sine, 1e-6) / sigma;
     sum += r * r;
   }
@@ -233,9 +234,10 @@ double directionMisfit(const SlidingWindow& window, const EstimatorParams& param
 
 void groupParallelLines(SlidingWindow& window, const EstimatorParams& params) {
   const double depth = medianDepth(window);
-  updateMembers(window, params, depth);
-  joinExisting(window, params, depth);
-  startGroup(window, params, depth);
+  const CameraPoses poses(window);
+  updateMembers(window, poses, params, depth);
+  joinExisting(window, poses, params, depth);
+  startGroup(window, poses, params, depth);
   dropUnusedDirections(window);
 }
 

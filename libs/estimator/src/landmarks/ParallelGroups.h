@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include "landmarks/CameraPoses.h"
 #include "lintel/estimator/EstimatorParams.h"
-#include "lintel/estimator/SlidingWindow.h"
 
 namespace lintel {
 
@@ -18,7 +18,7 @@ void groupParallelLines(SlidingWindow& window, const EstimatorParams& params);
 
 /// Misfit of a direction and a line: root mean square of the angles between direction and observation planes, in
 /// standard deviations.
-double directionMisfit(const SlidingWindow& window, const EstimatorParams& params, const LineTrack& track,
+double directionMisfit(const CameraPoses& poses, const EstimatorParams& params, const LineTrack& track,
                        const Eigen::Vector3d& d_w);
 
 }  // namespace lintel

@@ -67,17 +67,6 @@ Step evaluate(const Camera& camera, const std::vector<View>& views, double lambd
 
 }  // namespace
 
-CameraPoses::CameraPoses(const SlidingWindow& window) : window_(window) {
-  for (const WindowFrame& frame : window.frames) {
-    const Pose T_w_c = window.T_w_c(frame);
-    poses_.push_back({frame.id, T_w_c, T_w_c.inverse()});
-  }
-}
-
-const CameraPoses::FramePose& CameraPoses::of(FrameId id) const {
-  return *std::find_if(poses_.begin(), poses_.end(), [id](const FramePose& pose) { return pose.id == id; });
-}
-
 bool triangulatePoint(const CameraPoses& poses, const LandmarkParams& params, double sigma_px, PointTrack& track) {
   const SlidingWindow& window = poses.window();
   track.triangulated = false;

@@ -32,7 +32,7 @@ LINTEL_FOR_AVX2_TOO void add(Pairs pairs, double* __restrict H, std::ptrdiff_t r
 
 }  // namespace
 
-void addCameraPairs(const std::vector<CameraRows>& J, const Eigen::MatrixXd& information,
+void addCameraPairs(const std::vector<CameraRows>& J, const std::vector<double>& information,
                     const std::vector<Eigen::Index>& places, Eigen::MatrixXd& H) {
   add({J.data(), information.data(), places.data(), static_cast<std::ptrdiff_t>(J.size())}, H.data(), H.rows());
 }

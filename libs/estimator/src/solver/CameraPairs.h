@@ -12,8 +12,8 @@ namespace lintel {
 using CameraRows = Eigen::Matrix<double, 2, kCameraTangent, Eigen::RowMajor>;
 
 /// Adds information(i, j) J_i' J_j to the blocks of H in which the cameras of the sightings i and j meet, i >= j.
-/// `places`: first rows of the cameras in H, ascending.
-void addCameraPairs(const std::vector<CameraRows>& J, const Eigen::MatrixXd& information,
+/// `information`: symmetric, J.size() rows and columns. `places`: first rows of the cameras in H, ascending.
+void addCameraPairs(const std::vector<CameraRows>& J, const std::vector<double>& information,
                     const std::vector<Eigen::Index>& places, Eigen::MatrixXd& H);
 
 }  // namespace lintel

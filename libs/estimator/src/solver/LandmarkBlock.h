@@ -11,29 +11,35 @@
 #include "solver/CameraPairs.h"
 #include "solver/Factor.h"
 #include "solver/PanelSquare.h"
+#include "solver/SightingRows.h"
 
 namespace lintel {
+
+/// What a landmark's linearisation needs for a moment, one after the other.
+struct LandmarkScratch {
+  std::vector<SightingRows> rows, weighted_rows;
+  std::vector<CameraRows> camera_rows;
+  std::vector<Eigen::Vector2d> residuals, whitened;
+  std::vector<double> weights, information;
+  SightingProducts products;
+};
 
 /// A point or a line that is eliminated: its residuals, its part of the normal equations, and its last elimination.
 ///
 /// The errors of its sightings are correlated (TrackNoise); by which kind of noise, the residuals of the first
 /// linearisation decide. With r the residuals of all, whitened ones are L^-1 r; the loss counts for each of these, the
 /// track's for their sum. In the normal equations sightings i and j then meet with the weight in row i and column j of
-/// the information L^-T diag(weights) L^-1.
+/// the information L^-T diag(weights) L^-1: its rows are weighted by three passes over them, L^-1, weights, L^-T.
 template <class Target>
 struct LandmarkBlock {
   static constexpr int T = Target::kTangent, kSize = Target::kSize;
   static constexpr BlockKey::Kind kKind = kKindOf<Target>;
+  static_assert(Target::kRows == 2, "what SightingRows is for");
   struct Sighting {
     const ImageFactor<Target>* factor = nullptr;
     int camera = 0;
     double t_s = 0;
-    ImageLinearisation<Target> linearised;
   };
-
-  static constexpr int R = Target::kRows;
-  /// What a sighting's residuals depend on besides the camera, the landmark and the correction, and the residuals.
-  using SightingRows = Eigen::Matrix<double, R, T + kSightingCorrection + 1, Eigen::RowMajor>;
 
   double* block = nullptr;
   const ceres::LossFunction* loss = nullptr;  ///< of a sighting
@@ -47,21 +53,19 @@ struct LandmarkBlock {
   Eigen::Matrix<double, Eigen::Dynamic, T> W, Y;  ///< the landmark's columns of H, in the rows of its cameras, of the
                                                   ///< correction and of its direction; the same times inverse_root
   std::vector<RowRun> runs;                       ///< where these rows lie in CameraEquations
-  Eigen::MatrixXd whitening;                      ///< L^-1; empty before the first linearisation
-  Eigen::MatrixXd information;
-  std::vector<SightingRows> rows, weighted_rows;  ///< of all sightings; times `information`
-  std::vector<CameraRows> camera_rows;
-  std::vector<Eigen::Index> camera_places;  ///< in CameraEquations
+  Whitener whitener;                              ///< empty before the first linearisation
+  std::vector<Eigen::Index> camera_places;        ///< in CameraEquations
 
   /// What does not depend on the blocks' values, when all sightings and the tie are there.
   void prepare(const CameraLayout& layout);
 
   /// The landmark's robust cost at the blocks' present values.
-  double cost(const std::vector<CameraView>& views, const double* correction, const CameraLayout& layout) const;
+  double cost(const std::vector<CameraView>& views, const double* correction, const CameraLayout& layout,
+              LandmarkScratch& scratch) const;
 
   /// Takes residuals and Jacobians, adds the cameras' part to `eq`; returns the cost.
   double linearise(const std::vector<CameraView>& views, const double* correction, const CameraLayout& layout,
-                   CameraEquations& eq);
+                   LandmarkScratch& scratch, CameraEquations& eq);
 
   /// Takes the landmark out of `eq`, `damping` times its diagonal added.
   void eliminate(double damping, CameraEquations& eq);
@@ -71,14 +75,12 @@ struct LandmarkBlock {
 
  private:
   using PlusJacobian = Eigen::Matrix<double, kSize, T, Eigen::RowMajor>;
-  using Residuals = Eigen::Matrix<double, Eigen::Dynamic, R>;  ///< a row a sighting
-
-  void chooseNoise(const Residuals& residuals);
-  double whitenedCost(const Residuals& whitened, Eigen::VectorXd& weights) const;
-  double trackCost(const Residuals& residuals, Eigen::VectorXd& weights) const;
-  void weighSightings(const Eigen::VectorXd& weights);
+  void chooseNoise(LandmarkScratch& scratch);
+  double whitenedCost(const std::vector<Eigen::Vector2d>& whitened, std::vector<double>& weights) const;
   Eigen::Index correctionRow() const { return kCameraTangent * static_cast<Eigen::Index>(sightings.size()); }
-  void addSighting(std::size_t i, const CameraLayout& layout, CameraEquations& eq);
+  void takeRows(const std::vector<CameraView>& views, const double* correction, LandmarkScratch& scratch) const;
+  double weighRows(LandmarkScratch& scratch) const;
+  void addProducts(const SightingProducts& products, const CameraLayout& layout, CameraEquations& eq);
   double addTie(const CameraLayout& layout, CameraEquations& eq);
 };
 

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 #include <vector>
 
 #include "lintel/geometry/SmallMatrices.h"
@@ -18,8 +19,10 @@ namespace landmark_block {
 constexpr double kNoInformation = 1e-8;  // eigenvalues below count as zero; residuals are in standard deviations
 constexpr double kLeastDamping = 1e-6;   // times the damping: the least that is added to a diagonal
 
-template <int Rows, int Columns>
-using ByRows = Eigen::Matrix<double, Rows, Columns, Eigen::RowMajor>;
+template <class Matrix>
+double* numbersOf(std::vector<Matrix>& matrices) {
+  return matrices.empty() ? nullptr : matrices.front().data();
+}
 
 /// d residual / d tangent of the landmark; `plus`: the Jacobian of its manifold's Plus.
 template <class Target, class PlusJacobian>
@@ -49,55 +52,48 @@ Eigen::Matrix<double, T, T> inverseRoot(Eigen::Matrix<double, T, T> H, double da
 /// its degrees of freedom off, and with them its share of the determinant: otherwise short tracks, whose residuals the
 /// landmark takes up, were all of the quietest kind.
 template <class Target>
-void LandmarkBlock<Target>::chooseNoise(const Residuals& residuals) {
+void LandmarkBlock<Target>::chooseNoise(LandmarkScratch& scratch) {
   std::vector<double> t_s;
   for (const Sighting& s : sightings) t_s.push_back(s.t_s);
-  const auto count = static_cast<int>(residuals.size());
-  const double determinants = static_cast<double>(R) * std::max(1, count - T) / count;
-  const NoiseKind* likeliest = &noise->kinds.front();
+  const auto count = static_cast<int>(2 * sightings.size());
+  const double determinants = 2.0 * std::max(1, count - T) / count;
   double least = std::numeric_limits<double>::infinity();
-  Eigen::VectorXd weights;
   for (const NoiseKind& kind : noise->kinds) {
-    if (noise->kinds.size() == 1) break;
-    Residuals whitened = residuals;
-    const double log_det = whiten(kind, t_s, whitened);
-    const double cost = whitenedCost(whitened, weights) + determinants * log_det;
-    if (cost < least) {
+    Whitener candidate(kind, t_s);
+    scratch.whitened = scratch.residuals;
+    candidate.whiten(landmark_block::numbersOf(scratch.whitened), 2);
+    const double cost = whitenedCost(scratch.whitened, scratch.weights) + determinants * candidate.logDeterminant();
+    if (whitener.size() == 0 || cost < least) {
       least = cost;
-      likeliest = &kind;
+      whitener = std::move(candidate);
     }
   }
-  whitening = whitener(*likeliest, t_s);
-}
-
-template <class Target>
-double LandmarkBlock<Target>::trackCost(const Residuals& residuals, Eigen::VectorXd& weights) const {
-  return whitenedCost(whitening.template triangularView<Eigen::Lower>() * residuals, weights);
 }
 
 /// The weights are the derivatives of the cost by half the squares of whitened residuals.
 template <class Target>
-double LandmarkBlock<Target>::whitenedCost(const Residuals& whitened, Eigen::VectorXd& weights) const {
-  weights.resize(whitened.rows());
+double LandmarkBlock<Target>::whitenedCost(const std::vector<Eigen::Vector2d>& whitened,
+                                           std::vector<double>& weights) const {
+  weights.resize(whitened.size());
   double sum = 0, track_weight;
-  for (Eigen::Index i = 0; i < whitened.rows(); ++i) sum += robustCost(loss, whitened.row(i).squaredNorm(), weights[i]);
-  sum = TrackLoss(noise->freedom).cost(2 * sum, static_cast<int>(whitened.size()), T, track_weight);
-  weights *= track_weight;
+  for (std::size_t i = 0; i < whitened.size(); ++i) sum += robustCost(loss, whitened[i].squaredNorm(), weights[i]);
+  sum = TrackLoss(noise->freedom).cost(2 * sum, static_cast<int>(2 * whitened.size()), T, track_weight);
+  for (double& weight : weights) weight *= track_weight;
   return sum;
 }
 
 template <class Target>
 double LandmarkBlock<Target>::cost(const std::vector<CameraView>& views, const double* correction,
-                                   const CameraLayout& layout) const {
-  Residuals residuals(sightings.size(), +R);
+                                   const CameraLayout& layout, LandmarkScratch& scratch) const {
+  scratch.whitened.resize(sightings.size());
   ImageLinearisation<Target> l;
   for (std::size_t i = 0; i < sightings.size(); ++i) {
     const Sighting& s = sightings[i];
     s.factor->linearise(views[static_cast<std::size_t>(s.camera)], correction, block, false, l);
-    residuals.row(static_cast<Eigen::Index>(i)) = l.residual;
+    scratch.whitened[i] = l.residual;
   }
-  Eigen::VectorXd weights;
-  double sum = trackCost(residuals, weights);
+  whitener.whiten(landmark_block::numbersOf(scratch.whitened), 2);
+  double sum = whitenedCost(scratch.whitened, scratch.weights);
   if (tie) {
     const double* blocks[] = {block, layout.block(direction)};
     Eigen::Vector3d r;
@@ -126,70 +122,78 @@ void LandmarkBlock<Target>::prepare(const CameraLayout& layout) {
 
 template <class Target>
 double LandmarkBlock<Target>::linearise(const std::vector<CameraView>& views, const double* correction,
-                                        const CameraLayout& layout, CameraEquations& eq) {
-  H.setZero();
-  b.setZero();
-  W.template middleRows<kSightingCorrection>(correctionRow()).setZero();
-  PlusJacobian plus;
-  manifoldOf(kKindOf<Target>)->PlusJacobian(block, plus.data());
-  const std::size_t n = sightings.size();
-  Residuals residuals(n, +R);
-  rows.resize(n);
-  camera_rows.resize(n);
-  for (std::size_t i = 0; i < n; ++i) {
-    ImageLinearisation<Target>& l = sightings[i].linearised;
-    sightings[i].factor->linearise(views[static_cast<std::size_t>(sightings[i].camera)], correction, block, true, l);
-    rows[i] << landmark_block::tangentJacobian(l, plus), l.d_correction, l.residual;
-    camera_rows[i] = l.d_camera;
-    residuals.row(static_cast<Eigen::Index>(i)) = l.residual;
-  }
-  if (whitening.size() == 0) chooseNoise(residuals);
-  Eigen::VectorXd weights;
-  double sum = trackCost(residuals, weights);
-  weighSightings(weights);
-  for (std::size_t i = 0; i < n; ++i) addSighting(i, layout, eq);
-  addCameraPairs(camera_rows, information, camera_places, eq.H);
+                                        const CameraLayout& layout, LandmarkScratch& scratch, CameraEquations& eq) {
+  takeRows(views, correction, scratch);
+  if (whitener.size() == 0) chooseNoise(scratch);
+  double sum = weighRows(scratch);
+  multiplySightings(scratch.rows, scratch.camera_rows, scratch.weighted_rows, scratch.products);
+  addProducts(scratch.products, layout, eq);
+  whitener.information(scratch.weights.data(), scratch.information);
+  addCameraPairs(scratch.camera_rows, scratch.information, camera_places, eq.H);
   if (tie) sum += addTie(layout, eq);
   return sum;
 }
 
-/// `information`, and the sightings' rows times it.
 template <class Target>
-void LandmarkBlock<Target>::weighSightings(const Eigen::VectorXd& weights) {
-  const Eigen::Index n = weights.size();
-  information.setZero(n, n);
-  for (Eigen::Index k = 0; k < n; ++k)  // row k of L^-1 ends with column k
-    for (Eigen::Index j = 0; j <= k; ++j)
-      if (const double w = weights[k] * whitening(k, j); w != 0)
-        information.col(j).head(k + 1) += w * whitening.row(k).head(k + 1).transpose();
-  weighted_rows.resize(rows.size());
-  for (Eigen::Index i = 0; i < n; ++i) {
-    SightingRows& sum = weighted_rows[static_cast<std::size_t>(i)];
-    sum.setZero();
-    for (Eigen::Index j = 0; j < n; ++j)
-      if (information(i, j) != 0) sum += information(i, j) * rows[static_cast<std::size_t>(j)];
+void LandmarkBlock<Target>::takeRows(const std::vector<CameraView>& views, const double* correction,
+                                     LandmarkScratch& scratch) const {
+  PlusJacobian plus;
+  manifoldOf(kKindOf<Target>)->PlusJacobian(block, plus.data());
+  const std::size_t n = sightings.size();
+  scratch.rows.resize(n);
+  scratch.camera_rows.resize(n);
+  scratch.residuals.resize(n);
+  ImageLinearisation<Target> l;
+  for (std::size_t i = 0; i < n; ++i) {
+    sightings[i].factor->linearise(views[static_cast<std::size_t>(sightings[i].camera)], correction, block, true, l);
+    SightingRows& rows = scratch.rows[i];
+    rows.template leftCols<T>() = landmark_block::tangentJacobian(l, plus);
+    if constexpr (T < kTargetColumns) rows.template middleCols<kTargetColumns - T>(T).setZero();
+    rows.template middleCols<kSightingCorrection>(kCorrectionColumn) = l.d_correction;
+    rows.col(kResidualColumn) = l.residual;
+    scratch.camera_rows[i] = l.d_camera;
+    scratch.residuals[i] = l.residual;
   }
 }
 
+/// `weights`, and the information times `rows`.
 template <class Target>
-void LandmarkBlock<Target>::addSighting(std::size_t i, const CameraLayout& layout, CameraEquations& eq) {
-  using landmark_block::ByRows;  // their transposed ones lie by columns, which makes products of them fast
-  const ByRows<R, T> J = rows[i].template leftCols<T>(), weighted_J = weighted_rows[i].template leftCols<T>();
-  const ByRows<R, kSightingCorrection> Ji = rows[i].template middleCols<kSightingCorrection>(T),
-                                       weighted_Ji = weighted_rows[i].template middleCols<kSightingCorrection>(T);
-  const Eigen::Matrix<double, R, 1> weighted_r = weighted_rows[i].template rightCols<1>();
-  const CameraRows& Jc = camera_rows[i];
-  H.noalias() += J.transpose() * weighted_J;
-  b.noalias() += J.transpose() * weighted_r;
-  W.template middleRows<kSightingCorrection>(correctionRow()).noalias() += Ji.transpose() * weighted_J;
-  W.template middleRows<kCameraTangent>(kCameraTangent * static_cast<Eigen::Index>(i)).noalias() =
-      Jc.transpose() * weighted_J;
-  const Eigen::Index at = layout.camera(sightings[i].camera), correction = layout.correction();
-  eq.H.block<kSightingCorrection, kCameraTangent>(correction, at).noalias() += weighted_Ji.transpose() * Jc;
-  eq.H.block<kSightingCorrection, kSightingCorrection>(correction, correction).noalias() +=
-      Ji.transpose() * weighted_Ji;
-  eq.b.segment<kCameraTangent>(at).noalias() += Jc.transpose() * weighted_r;
-  eq.b.segment<kSightingCorrection>(correction).noalias() += Ji.transpose() * weighted_r;
+double LandmarkBlock<Target>::weighRows(LandmarkScratch& scratch) const {
+  constexpr int kColumns = 2 * kSightingColumns;  // of both coordinates
+  scratch.weighted_rows = scratch.rows;
+  double* const rows = landmark_block::numbersOf(scratch.weighted_rows);
+  whitener.whiten(rows, kColumns);
+  for (std::size_t i = 0; i < sightings.size(); ++i)
+    scratch.residuals[i] = scratch.weighted_rows[i].col(kResidualColumn);
+  const double sum = whitenedCost(scratch.residuals, scratch.weights);
+  for (std::size_t i = 0; i < sightings.size(); ++i) scratch.weighted_rows[i] *= scratch.weights[i];
+  whitener.whitenTransposed(rows, kColumns);
+  return sum;
+}
+
+/// Sets H, b and W, but for the tie; adds the rest to `eq`.
+template <class Target>
+void LandmarkBlock<Target>::addProducts(const SightingProducts& products, const CameraLayout& layout,
+                                        CameraEquations& eq) {
+  const Eigen::Index correction = layout.correction();
+  const auto& all = products.all;
+  H = all.template topLeftCorner<T, T>().template selfadjointView<Eigen::Upper>();
+  b = all.template block<T, 1>(0, kResidualColumn);
+  W.template middleRows<kSightingCorrection>(correctionRow()) =
+      all.template block<T, kSightingCorrection>(0, kCorrectionColumn).transpose();
+  eq.H.block<kSightingCorrection, kSightingCorrection>(correction, correction)
+      .template triangularView<Eigen::Lower>() +=
+      all.template block<kSightingCorrection, kSightingCorrection>(kCorrectionColumn, kCorrectionColumn).transpose();
+  eq.b.segment<kSightingCorrection>(correction) +=
+      all.template block<kSightingCorrection, 1>(kCorrectionColumn, kResidualColumn);
+  for (std::size_t i = 0; i < sightings.size(); ++i) {
+    const auto& of_camera = products.by_camera[i];
+    W.template middleRows<kCameraTangent>(kCameraTangent * static_cast<Eigen::Index>(i)) =
+        of_camera.template leftCols<T>();
+    eq.H.block<kSightingCorrection, kCameraTangent>(correction, camera_places[i]) +=
+        of_camera.template middleCols<kSightingCorrection>(kCorrectionColumn).transpose();
+    eq.b.segment<kCameraTangent>(camera_places[i]) += of_camera.col(kResidualColumn);
+  }
 }
 
 template <class Target>

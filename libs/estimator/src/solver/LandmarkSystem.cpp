@@ -120,9 +120,9 @@ std::set<BlockKey> LandmarkSystem::states(const SlidingWindow& window) const {
 
 double LandmarkSystem::cost(const std::vector<CameraView>& views) const {
   double sum = 0;
-  const auto add = [&](const auto& part) { sum += part.cost(views, correction_, layout_); };
-  eachLandmark(landmarks_, add);
-  eachKept(kept_, add);
+  LandmarkScratch scratch;
+  eachLandmark(landmarks_, [&](const auto& part) { sum += part.cost(views, correction_, layout_, scratch); });
+  eachKept(kept_, [&](const auto& part) { sum += part.cost(views, correction_, layout_); });
   return sum;
 }
 
@@ -130,9 +130,9 @@ double LandmarkSystem::linearise(const std::vector<CameraView>& views) {
   direct_.H.setZero(layout_.size(), layout_.size());
   direct_.b.setZero(layout_.size());
   double sum = 0;
-  const auto add = [&](auto& part) { sum += part.linearise(views, correction_, layout_, direct_); };
-  eachLandmark(landmarks_, add);
-  eachKept(kept_, add);
+  LandmarkScratch scratch;
+  eachLandmark(landmarks_, [&](auto& part) { sum += part.linearise(views, correction_, layout_, scratch, direct_); });
+  eachKept(kept_, [&](auto& part) { sum += part.linearise(views, correction_, layout_, direct_); });
   return sum;
 }
 

@@ -22,7 +22,7 @@ int rejectOutliers(SlidingWindow& window, const LandmarkParams& params) {
   }
   for (auto& [id, track] : window.lines) {
     if (!track.triangulated || !track.distance_known || track.sightings.empty()) continue;
-    const double error = lineError(window, track);
+    const double error = lineError(poses, track);
     if (error <= params.line_max_error_px) continue;
     if (track.degenerate()) continue;  // a bad estimate, not a bad track: made anew, from its group or by itself
     track.sightings.erase(track.sightings.begin(), track.sightings.end() - 1);

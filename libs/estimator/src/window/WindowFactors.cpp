@@ -117,14 +117,15 @@ void WindowFactors::addPoint(const PointTrack& track) {
 }
 
 void WindowFactors::addLines(const DegeneracyParams& degeneracy) {
+  const CameraPoses poses(window_);
   for (const auto& [id, track] : window_.lines)
-    if (entersProblem(track, degeneracy)) addLine(track, degeneracy);
+    if (entersProblem(track, degeneracy)) addLine(track, poses, degeneracy);
 }
 
 /// With what ties it to its group, if it has one.
-void WindowFactors::addLine(const LineTrack& track, const DegeneracyParams& degeneracy) {
+void WindowFactors::addLine(const LineTrack& track, const CameraPoses& poses, const DegeneracyParams& degeneracy) {
   if (!track.distance_known) {
-    for (const LineSighting& s : track.sightings) addVanishing(track, s, degeneracy);
+    for (const LineSighting& s : track.sightings) addVanishing(track, s, poses, degeneracy);
     return;
   }
   if (track.sightings.size() < 2) return;  // one sighting says nothing about the cameras
@@ -144,9 +145,10 @@ void WindowFactors::addLine(const LineTrack& track, const DegeneracyParams& dege
       {{BlockKey::kLine, track.id}, {BlockKey::kDirection, track.group}}, structural_loss_.get());
 }
 
-void WindowFactors::addVanishing(const LineTrack& track, const LineSighting& s, const DegeneracyParams& degeneracy) {
+void WindowFactors::addVanishing(const LineTrack& track, const LineSighting& s, const CameraPoses& poses,
+                                 const DegeneracyParams& degeneracy) {
   setStructuralLoss(degeneracy);
-  const double sigma = planeSigma(window_, params_, s, window_.directions.at(track.group).d_w);
+  const double sigma = planeSigma(poses, params_, s, window_.directions.at(track.group).d_w);
   add(std::make_unique<VanishingFactor>(s.start, s.end, motionOf(s.frame),
                                         1 / std::hypot(sigma, degeneracy.structural_sigma_rad)),
       {{BlockKey::kPose, s.frame},

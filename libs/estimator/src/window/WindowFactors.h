@@ -8,6 +8,7 @@
 #include <memory>
 #include <vector>
 
+#include "landmarks/CameraPoses.h"
 #include "lintel/estimator/EstimatorParams.h"
 #include "lintel/estimator/SlidingWindow.h"
 #include "lintel/factors/LineFactor.h"
@@ -41,7 +42,8 @@ class WindowFactors {
   void addLines(const DegeneracyParams& degeneracy);
 
   /// What a sighting says about the direction of the line's group alone.
-  void addVanishing(const LineTrack& track, const LineSighting& sighting, const DegeneracyParams& degeneracy);
+  void addVanishing(const LineTrack& track, const LineSighting& sighting, const CameraPoses& poses,
+                    const DegeneracyParams& degeneracy);
 
   /// Any residual. `loss` must outlive the factors.
   void add(std::unique_ptr<ceres::CostFunction> cost, std::vector<BlockKey> blocks,
@@ -51,7 +53,7 @@ class WindowFactors {
 
  private:
   void addPoint(const PointTrack& track);
-  void addLine(const LineTrack& track, const DegeneracyParams& degeneracy);
+  void addLine(const LineTrack& track, const CameraPoses& poses, const DegeneracyParams& degeneracy);
   void setStructuralLoss(const DegeneracyParams& degeneracy);
 
   const FrameMotion& motionOf(FrameId id) const { return motions_.at(id); }

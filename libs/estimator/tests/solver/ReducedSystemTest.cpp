@@ -43,7 +43,7 @@ class ReducedSystemTest : public testing::Test {
     for (auto& [id, track] : window_.lines) {  // and some that have a direction only
       if (track.triangulated && !track.degenerate()) continue;
       track.group = 3;
-      for (const LineSighting& s : track.sightings) factors_->addVanishing(track, s, kParams.degeneracy);
+      for (const LineSighting& s : track.sightings) factors_->addVanishing(track, s, window_, kParams.degeneracy);
       vanishing_ += !track.sightings.empty();
     }
   }

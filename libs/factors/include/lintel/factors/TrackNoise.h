@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <Eigen/Core>
 #include <limits>
 #include <vector>
 
@@ -29,13 +28,39 @@ inline const TrackNoise kWhiteNoise;
 /// The typical kind, and those of which the walk is a fourth and four times as large.
 std::vector<NoiseKind> kindsAbout(const NoiseKind& typical);
 
-/// L^-1 times `errors`, with L L' = white^2 I + walk^2 min(t_i, t_j) the covariance of a track's errors in one
-/// coordinate, times from the first observation on: what each observation says beyond those before it, as a Kalman
-/// filter's innovations over their standard deviations. `errors`: a row an observation, a column a coordinate. Returns
-/// log det L. `t_s`: times of the observations [s], ascending.
-double whiten(const NoiseKind& kind, const std::vector<double>& t_s, Eigen::Ref<Eigen::MatrixXd> errors);
+/// L^-1 of L L' = white^2 I + walk^2 min(t_i, t_j), the covariance of a track's errors in one coordinate, times from
+/// the first observation on: what each observation says beyond those before it, as a Kalman filter's innovations over
+/// their standard deviations. Matrices have a row an observation, and lie by rows.
+class Whitener {
+ public:
+  Whitener() = default;
 
-/// L^-1 itself.
-Eigen::MatrixXd whitener(const NoiseKind& kind, const std::vector<double>& t_s);
+  /// `t_s`: times of the observations [s], ascending.
+  Whitener(const NoiseKind& kind, const std::vector<double>& t_s);
+
+  std::size_t size() const { return observations_.size(); }
+
+  /// log det L.
+  double logDeterminant() const { return log_det_; }
+
+  /// m <- L^-1 m.
+  void whiten(double* m, int columns) const;
+
+  /// m <- L^-T m.
+  void whitenTransposed(double* m, int columns) const;
+
+  /// L^-T diag(weights) L^-1, size() rows and columns, in `result`.
+  void information(const double* weights, std::vector<double>& result) const;
+
+  /// Of the filter whose state is the walk: 1 / the innovation's standard deviation, and what an innovation of one such
+  /// moves the state by.
+  struct Observation {
+    double inverse_sigma, gain;
+  };
+
+ private:
+  std::vector<Observation> observations_;
+  double log_det_ = 0;
+};
 
 }  // namespace lintel
