@@ -19,7 +19,7 @@ RayObservation linearised(const Camera& camera, const Eigen::Vector2d& normalise
   d_distorted.leftCols<4>() << -distorted.x() / camera.fx, 0, -1 / camera.fx, 0, 0, -distorted.y() / camera.fy, 0,
       -1 / camera.fy;
   d_distorted.rightCols<2>() = -camera.coefficientJacobian(normalised);
-  o.correction_jacobian.leftCols<6>() = camera.distortJacobian(normalised).inverse() * d_distorted;
+  o.correction_jacobian = camera.distortJacobian(normalised).inverse() * d_distorted;
   return o;
 }
 
@@ -88,8 +88,8 @@ RayObservation wideObservation(const Camera& camera, const Eigen::Vector3d& ray)
   const Eigen::Matrix<double, 3, 2> B = tangentBasis(ray);
   // of a fixed pixel: d.point B dray + d.intrinsics dc = 0
   const Eigen::Matrix<double, 3, kIntrinsicsSize> J = -B * (d.point * B).inverse() * d.intrinsics;
-  o.correction_jacobian.leftCols<kIntrinsicsSize>() = J.topRows<2>();
-  o.z_jacobian.leftCols<kIntrinsicsSize>() = J.bottomRows<1>();
+  o.correction_jacobian = J.topRows<2>();
+  o.z_jacobian = J.bottomRows<1>();
   return o;
 }
 
@@ -123,7 +123,7 @@ void moveEnd(LineEnd& end, const Eigen::Vector3d& across, double offset, const R
   end.ray.normalize();
 }
 
-/// d (across . ray) / d correction.
+/// d (across . ray) / d intrinsics.
 RayObservation::Row acrossJacobian(const RayObservation& o, const Eigen::Vector3d& across) {
   RayObservation::Row J = across.head<2>().transpose() * o.correction_jacobian;
   if (o.wide) J += across.z() * o.z_jacobian;
@@ -203,29 +203,27 @@ void fitEnds(const Camera& calibrated, const Camera& camera, const Eigen::Vector
 }  // namespace
 
 Eigen::Vector3d RayObservation::corrected(const double* correction) const {
-  const CorrectionBlock change = Eigen::Map<const CorrectionBlock>(correction) - linearised_at;
+  const IntrinsicsBlock change = intrinsicsOf(correction) - linearised_at;
   Eigen::Vector3d moved = ray;
   moved.head<2>() += correction_jacobian * change;
   if (wide) moved.z() += z_jacobian.dot(change);
   return moved;
 }
 
-Eigen::Matrix<double, 1, kIntrinsicsSize> RayObservation::alongJacobian(const Eigen::Vector3d& v) const {
-  Eigen::Matrix<double, 1, kIntrinsicsSize> J =
-      v.head<2>().transpose() * correction_jacobian.leftCols<kIntrinsicsSize>();
-  if (wide) J += v.z() * z_jacobian.leftCols<kIntrinsicsSize>();
+RayObservation::Row RayObservation::alongJacobian(const Eigen::Vector3d& v) const {
+  Row J = v.head<2>().transpose() * correction_jacobian;
+  if (wide) J += v.z() * z_jacobian;
   return J;
 }
 
 double LineEnd::scale_px(const double* correction) const {
-  return linearised_scale_px *
-         (1 + log_scale_jacobian.dot(Eigen::Map<const CorrectionBlock>(correction) - linearised_at));
+  return linearised_scale_px * (1 + log_scale_jacobian.dot(intrinsicsOf(correction) - linearised_at));
 }
 
 RayObservation makeObservation(const Camera& calibrated, const Eigen::Vector2d& px, const CorrectionBlock& correction) {
   const Camera camera = correctedCamera(calibrated, correction.data());
   RayObservation o = camera.wide() ? wideObservation(camera, camera.ray(px)) : linearised(camera, camera.normalise(px));
-  o.linearised_at = correction;
+  o.linearised_at = intrinsicsOf(correction.data());
   return o;
 }
 
@@ -236,7 +234,7 @@ std::pair<LineEnd, LineEnd> makeLineEnds(const Camera& calibrated, const Eigen::
     const Eigen::Vector3d start = camera.ray(start_px), end = camera.ray(end_px);
     std::pair<LineEnd, LineEnd> ends{wideLineEnd(camera, start, end), wideLineEnd(camera, end, start)};
     fitWideEnds(calibrated, camera, start_px, end_px, ends);
-    ends.first.linearised_at = ends.second.linearised_at = correction;
+    ends.first.linearised_at = ends.second.linearised_at = intrinsicsOf(correction.data());
     return ends;
   }
   const Eigen::Vector2d a = calibrated.normalise(start_px), b = calibrated.normalise(end_px);
@@ -244,7 +242,7 @@ std::pair<LineEnd, LineEnd> makeLineEnds(const Camera& calibrated, const Eigen::
   const Eigen::Vector2d along = (end - start).normalized(), normal(-along.y(), along.x());
   std::pair<LineEnd, LineEnd> ends{makeLineEnd(camera, start, normal), makeLineEnd(camera, end, normal)};
   fitEnds(calibrated, camera, a, b, normal, ends);
-  ends.first.linearised_at = ends.second.linearised_at = correction;
+  ends.first.linearised_at = ends.second.linearised_at = intrinsicsOf(correction.data());
   return ends;
 }
 

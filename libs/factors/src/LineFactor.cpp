@@ -28,9 +28,9 @@ void LineResidual::linearise(const CameraView& view, const double* correction, c
   out.d_camera.rightCols<3>() = d_l * skew(l);
   const LineEnd* seen[] = {&start, &end};
   for (int k = 0; k < 2; ++k) {
-    out.d_correction.row(k).head<kIntrinsicsSize>() = seen[k]->alongJacobian(scale[k] * distances.normal) +
-                                                      weight * seen[k]->linearised_scale_px * distances.residual[k] *
-                                                          seen[k]->log_scale_jacobian.leftCols<kIntrinsicsSize>();
+    out.d_correction.row(k).head<kIntrinsicsSize>() =
+        seen[k]->alongJacobian(scale[k] * distances.normal) +
+        weight * seen[k]->linearised_scale_px * distances.residual[k] * seen[k]->log_scale_jacobian;
     out.d_correction(k, kReadoutAt) = 0;  // points tell the readout: Unroller moves ends of lines by it
   }
   const Eigen::Matrix<double, 2, 3> d_dw = d_nw * skew(from_camera_w);

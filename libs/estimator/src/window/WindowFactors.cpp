@@ -13,6 +13,8 @@ namespace lintel {
 
 namespace {
 
+constexpr std::size_t kFirstMemory = 1 << 20;  // [bytes] about what a full window needs
+
 TrackNoise pointNoise(const FactorParams& params) {
   const double unit = params.point_sigma_px;
   return {kindsAbout({params.point_noise_px / unit, params.point_walk_px / unit}), params.track_freedom};
@@ -31,7 +33,10 @@ WindowFactors::WindowFactors(const SlidingWindow& window, const FactorParams& pa
       point_loss_(params.point_loss_width),
       line_loss_(params.line_loss_width),
       point_noise_(pointNoise(params)),
-      line_noise_(lineNoise(params)) {
+      line_noise_(lineNoise(params)),
+      memory_(std::make_unique<std::pmr::monotonic_buffer_resource>(kFirstMemory)),
+      point_factors_(memory_.get()),
+      line_factors_(memory_.get()) {
   for (const WindowFrame& frame : window.frames) motions_[frame.id] = frame.bodyMotion();
 }
 

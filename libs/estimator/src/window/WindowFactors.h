@@ -6,6 +6,7 @@
 #include <deque>
 #include <map>
 #include <memory>
+#include <memory_resource>
 #include <vector>
 
 #include "landmarks/CameraPoses.h"
@@ -65,8 +66,10 @@ class WindowFactors {
   std::unique_ptr<ceres::LossFunction> structural_loss_, calibration_loss_;
   std::map<FrameId, FrameMotion> motions_;
   std::vector<Factor> factors_;
-  std::deque<PointFactor> point_factors_;
-  std::deque<LineFactor> line_factors_;
+  // factors of images are many, and all go together
+  std::unique_ptr<std::pmr::monotonic_buffer_resource> memory_;
+  std::pmr::deque<PointFactor> point_factors_;
+  std::pmr::deque<LineFactor> line_factors_;
   std::vector<std::unique_ptr<ceres::CostFunction>> others_;
 };
 

@@ -11,18 +11,18 @@ namespace lintel {
 
 /// The ray of an image observation (Camera.h) and how it moves with the camera correction, about one correction.
 struct RayObservation {
-  using Row = Eigen::Matrix<double, 1, kCorrectionSize>;
+  using Row = Eigen::Matrix<double, 1, kIntrinsicsSize>;
   Eigen::Vector3d ray = Eigen::Vector3d::UnitZ();
   ObservationJacobian correction_jacobian = ObservationJacobian::Zero();  ///< of x and y of the ray
   Row z_jacobian = Row::Zero();                                           ///< of z: of wide lenses only
-  CorrectionBlock linearised_at = CorrectionBlock::Zero();
+  IntrinsicsBlock linearised_at = IntrinsicsBlock::Zero();
   bool wide = false;
 
   /// The ray under a correction, to first order.
   Eigen::Vector3d corrected(const double* correction) const;
 
   /// d (v . ray) / d intrinsics.
-  Eigen::Matrix<double, 1, kIntrinsicsSize> alongJacobian(const Eigen::Vector3d& v) const;
+  Row alongJacobian(const Eigen::Vector3d& v) const;
 };
 
 /// An observed end point of a line, and how many pixels a distance of 1 across the line is there. That scale moves with
@@ -30,7 +30,7 @@ struct RayObservation {
 /// and every line would pull at it.
 struct LineEnd : RayObservation {
   double linearised_scale_px = 1;        ///< at `linearised_at`
-  Row log_scale_jacobian = Row::Zero();  ///< d log scale / d correction
+  Row log_scale_jacobian = Row::Zero();  ///< d log scale / d intrinsics
 
   /// Under a correction, to first order [px].
   double scale_px(const double* correction) const;

@@ -38,9 +38,12 @@ using LineBlock = Eigen::Matrix<double, kLineSize, 1>;
 using DirectionBlock = Eigen::Matrix<double, kDirectionSize, 1>;
 using CorrectionBlock = Eigen::Matrix<double, kCorrectionSize, 1>;
 
-/// d normalised observation / d correction: how one image observation moves with the camera correction.
-/// The columns of readout and time offset are zero: these move the pose instead (FrameMotion.h).
-using ObservationJacobian = Eigen::Matrix<double, 2, kCorrectionSize>;
+/// The part of a correction that changes the ray of a pixel; readout and time offset move the pose (FrameMotion.h).
+using IntrinsicsBlock = Eigen::Matrix<double, kIntrinsicsSize, 1>;
+inline IntrinsicsBlock intrinsicsOf(const double* correction) { return IntrinsicsBlock::Map(correction); }
+
+/// d normalised observation / d intrinsics: how one image observation moves with the camera correction.
+using ObservationJacobian = Eigen::Matrix<double, 2, kIntrinsicsSize>;
 
 PoseBlock toBlock(const Pose& pose);
 Pose poseFromBlock(const double* b);
