@@ -20,8 +20,12 @@ Eigen::Vector4d dampedStep(const NormalEquations4& normal, double damping, const
 }
 
 Eigen::Matrix4d covarianceOf(const Eigen::Matrix4d& information) {
+  constexpr double kLeast = 1e-6;
+  // the squared norm is the sum of 1 / eigenvalue: below the limit, none is raised
+  if (const auto root = inverseRootLlt<4>(information); root && root->squaredNorm() < 1 / kLeast)
+    return *root * root->transpose();
   const SymmetricEigen<4> eigen = symmetricEigen(information);
-  const Eigen::Vector4d variance = eigen.values.cwiseMax(1e-6).cwiseInverse();
+  const Eigen::Vector4d variance = eigen.values.cwiseMax(kLeast).cwiseInverse();
   return eigen.vectors * variance.asDiagonal() * eigen.vectors.transpose();
 }
 

@@ -136,10 +136,10 @@ double LandmarkSystem::linearise(const std::vector<CameraView>& views) {
   return sum;
 }
 
-CameraEquations LandmarkSystem::eliminate(double damping) {
-  CameraEquations eq = direct_;
-  eachLandmark(landmarks_, [&](auto& landmark) { landmark.eliminate(damping, eq); });
-  return eq;
+const CameraEquations& LandmarkSystem::eliminate(double damping) {
+  reduced_ = direct_;
+  eachLandmark(landmarks_, [&](auto& landmark) { landmark.eliminate(damping, reduced_); });
+  return reduced_;
 }
 
 double LandmarkSystem::backSubstitute(const Eigen::VectorXd& camera_step, double damping) {

@@ -44,7 +44,7 @@ class LandmarkSystem {
 
   /// Landmarks eliminated, `damping` times their diagonal added: lower triangle of H. Without damping, directions of a
   /// landmark that no residual sees are left out.
-  CameraEquations eliminate(double damping);
+  const CameraEquations& eliminate(double damping);
 
   /// The landmarks' reaction to a step of the cameras; their part of the model's decrease.
   double backSubstitute(const Eigen::VectorXd& camera_step, double damping);
@@ -77,7 +77,7 @@ class LandmarkSystem {
              std::vector<KeptSighting<DirectionTarget>>>
       kept_;
   std::vector<const Factor*> others_;
-  CameraEquations direct_;
+  CameraEquations direct_, reduced_;
 };
 
 }  // namespace lintel

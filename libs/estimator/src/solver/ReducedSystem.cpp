@@ -114,7 +114,7 @@ NormalEquations ReducedSystem::eliminate() {
 
 bool ReducedSystem::solve(double damping) {
   const CameraChain chain = this->chain();
-  Eigen::MatrixXd H = states_.H;
+  Eigen::MatrixXd& H = factor_ = states_.H;
   Eigen::VectorXd b = states_.b;
   chain.add(landmarks_.eliminate(damping), H, b);
   leaveOutHeld(H, b);

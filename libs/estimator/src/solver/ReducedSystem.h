@@ -88,6 +88,7 @@ class ReducedSystem {
   NormalEquations states_;          // of the others alone, lower triangle
   std::vector<Eigen::Index> held_;  // rows of the states' equations
   std::vector<CameraView> views_;   // at the last linearisation
+  Eigen::MatrixXd factor_;          // of the last solution
   Eigen::VectorXd step_;
   std::vector<double> saved_;
   double model_decrease_ = 0, states_move_ = 0;
