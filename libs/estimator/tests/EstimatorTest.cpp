@@ -373,7 +373,7 @@ TEST(Estimator, BlindnessIsBridgedForAWhileAndThenAFailure) {
   EXPECT_EQ(lostOf(moment), 0);
   EXPECT_TRUE(moment[dark + 5].hasPose());
   const auto longer =
-      run(darkened(flight, dark, static_cast<std::size_t>(2 * params.failure.max_blind_frames + 6)), params);
+      run(darkened(flight, dark, 2 * static_cast<std::size_t>(params.failure.max_blind_frames) + 6), params);
   ASSERT_GE(lostOf(longer), 1);
   for (const WindowUpdate& u : longer)
     if (u.status == EstimatorStatus::kLost) {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <stdexcept>
 
 #include "lintel/exporting/Undistortion.h"
@@ -29,7 +30,8 @@ TEST_P(Undistortion, TheImageIsThePinholes) {
   const auto taken = [&](const Camera& by) {
     GrayImage image{by.width, by.height, {}};
     for (int y = 0; y < by.height; ++y)
-      for (int x = 0; x < by.width; ++x) image.pixels.push_back(static_cast<std::uint8_t>(level(by.ray({x, y})) + 0.5));
+      for (int x = 0; x < by.width; ++x)
+        image.pixels.push_back(static_cast<std::uint8_t>(std::lround(level(by.ray({x, y})))));
     return image;
   };
   const GrayImage seen = taken(camera), expected = taken(pinhole), result = ImageUndistorter(camera, pinhole)(seen);

@@ -276,7 +276,7 @@ std::shared_ptr<Preintegration> somePreintegration() {
   ImuBatch samples;
   for (int i = 0; i <= 20; ++i) {
     const double t = 0.005 * i;
-    samples.push_back({1400000000000000000 + i * 5000000,
+    samples.push_back({1'400'000'000'000'000'000 + i * std::int64_t{5'000'000},
                        {0.5 * std::sin(9 * t), 0.4, -0.3 * std::cos(5 * t)},
                        {std::cos(7 * t), 2 * t, 9.8 + std::sin(20 * t)}});
   }

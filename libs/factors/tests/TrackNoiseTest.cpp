@@ -96,6 +96,7 @@ TEST(TrackNoise, TheKindIsFoundInATracksErrors) {
             walk + kinds[truth].white * Eigen::RowVector2d(unit(random), unit(random));
       }
       std::vector<double> costs;
+      costs.reserve(kinds.size());
       for (const NoiseKind& kind : kinds) {
         costs.push_back(0.5 * whitened(kind, t_s, errors).squaredNorm() + 2 * Whitener(kind, t_s).logDeterminant());
       }

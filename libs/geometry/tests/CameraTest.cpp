@@ -125,6 +125,7 @@ INSTANTIATE_TEST_SUITE_P(Lenses, AnyCamera,
 /// Pixels of OpenCV's functions for the camera.
 std::vector<cv::Point2d> byOpenCv(const Camera& camera, const std::vector<Vector3d>& points) {
   std::vector<cv::Point3d> from;
+  from.reserve(points.size());
   for (const Vector3d& p : points) from.emplace_back(p.x(), p.y(), p.z());
   const cv::Matx33d K(camera.fx, 0, camera.cx, 0, camera.fy, camera.cy, 0, 0, 1);
   const cv::Vec3d none(0, 0, 0);

@@ -15,7 +15,7 @@ namespace {
 Preintegration constantReadings(const Eigen::Vector3d& gyro, const Eigen::Vector3d& accel, const ImuBias& bias) {
   Preintegration imu(bias, {});
   ImuBatch samples;
-  for (int i = 0; i <= 200; ++i) samples.push_back({i * 5'000'000, gyro, accel});
+  for (int i = 0; i <= 200; ++i) samples.push_back({i * 5'000'000LL, gyro, accel});
   imu.append(samples);
   return imu;
 }

@@ -43,7 +43,7 @@ TurnCheck checkOf(const Flight& flight) {
     const double t_s = 0.05 * frame;
     for (int i = 0; i <= 10; ++i) {
       ImuSample sample;
-      sample.t_ns = 50'000'000LL * frame - 50'000'000 + 5'000'000 * i;
+      sample.t_ns = 50'000'000LL * (frame - 1) + 5'000'000LL * i;
       const double at_s = flight.imu_time * (1e-9 * static_cast<double>(sample.t_ns) + flight.clock_s);
       sample.gyro = flight.gyro(flight.rate * rateAt(at_s)) + Eigen::Vector3d(0.02, -0.01, 0.03);
       imu.push_back(sample);

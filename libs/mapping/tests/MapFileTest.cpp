@@ -5,6 +5,7 @@
 #include <zlib.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstring>
 #include <fstream>
@@ -109,9 +110,16 @@ TEST_F(MapFile, EveryValueReturnsToTheBit) {
   EXPECT_EQ(back.points[3].observations[2].px, map.points[3].observations[2].px);
   EXPECT_EQ(back.points[3].first_t_ns, -5);
   EXPECT_EQ(back.points[3].sigma_distance_m, map.points[3].sigma_distance_m);
-  // NaN and -0 too
-  EXPECT_EQ(std::memcmp(&back.lines[3].segment_w, &map.lines[3].segment_w, sizeof(Segment3)), 0);
-  EXPECT_EQ(std::memcmp(&back.lines[4].segment_w, &map.lines[4].segment_w, sizeof(Segment3)), 0);
+  // NaN and -0 too: by their bits
+  for (const std::size_t i : {std::size_t{3}, std::size_t{4}}) {
+    const auto bits = [](const Eigen::Vector3d& v) {
+      std::array<std::uint64_t, 3> result{};
+      std::memcpy(result.data(), v.data(), sizeof result);
+      return result;
+    };
+    EXPECT_EQ(bits(back.lines[i].segment_w.start), bits(map.lines[i].segment_w.start));
+    EXPECT_EQ(bits(back.lines[i].segment_w.end), bits(map.lines[i].segment_w.end));
+  }
   EXPECT_EQ(back.lines[19].id, ~std::uint64_t{0});
   EXPECT_EQ(back.lines[9].observations[3].end_px, map.lines[9].observations[3].end_px);
   EXPECT_EQ(back.lines[9].constrained, true);

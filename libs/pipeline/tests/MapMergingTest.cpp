@@ -14,7 +14,7 @@ namespace {
 
 using testing::HasSubstr;
 
-constexpr std::int64_t kSecond = 1'000'000'000;
+constexpr std::int64_t kSecond = 1'000'000'000, kDay = 86400 * kSecond;
 
 /// Three keyframes a second apart, one view, two poses a keyframe.
 LineMap smallMap(std::int64_t from_ns, const std::string& source) {
@@ -67,10 +67,10 @@ TEST(MapMerging, NumbersThatNoFlightHasAreRefused) {
       [](LineMap& m) { m.keyframes[1].T_w_b.p.x() = std::nan(""); },
       [](LineMap& m) { m.keyframes[1].v_w_b.x() = 1e300; },
       [](LineMap& m) { m.trajectory[2].second.q.coeffs() *= 2; },
-      [](LineMap& m) { m.pieces[0].last_ns += 100 * 86400 * kSecond; },
-      [](LineMap& m) { m.keyframes[1].t_ns += 2 * 86400 * kSecond; },
-      [](LineMap& m) { m.trajectory[2].first -= 2 * 86400 * kSecond; },
-      [](LineMap& m) { m.views[0].looks.t_ns -= 2 * 86400 * kSecond; }};
+      [](LineMap& m) { m.pieces[0].last_ns += 100 * kDay; },
+      [](LineMap& m) { m.keyframes[1].t_ns += 2 * kDay; },
+      [](LineMap& m) { m.trajectory[2].first -= 2 * kDay; },
+      [](LineMap& m) { m.views[0].looks.t_ns -= 2 * kDay; }};
   for (const auto& damage : damages) {
     LineMap damaged = smallMap(5, "b");
     damage(damaged);

@@ -13,7 +13,7 @@ namespace {
 /// A camera that sees points 2 to 8 m away, of which a part is matched to wrong directions.
 class ResectionTest : public testing::Test {
  protected:
-  double between(double low, double high) { return low + (high - low) * (random_() % 100000) / 1e5; }
+  double between(double low, double high) { return low + (high - low) * static_cast<double>(random_() % 100000) / 1e5; }
 
   std::vector<Sighting> sightings(int right, int wrong) {
     std::vector<Sighting> all;

@@ -68,13 +68,13 @@ class LintelVioTest : public testing::Test {
   }
   /// A copy of the recording with its own files (no links).
   static std::string copyOfRecording(const std::string& name) {
-    const std::string copy = *work_ / name;
+    std::string copy = *work_ / name;
     fs::copy(recording(), copy, fs::copy_options::recursive | fs::copy_options::overwrite_existing);
     return copy;
   }
   /// The recording as a rawlog with its images inside, made when it is first asked for.
   static std::string embeddedRawlog() {
-    const std::string rawlog = *work_ / "embedded.rawlog";
+    std::string rawlog = *work_ / "embedded.rawlog";
     if (!fs::exists(rawlog)) {
       EXPECT_EQ(runConverter({"-q", "--embed", "-z", "1", "-i", recording(), "-o", rawlog}).exit_code, 0);
     }
@@ -185,7 +185,7 @@ TEST_F(LintelVioTest, FollowsTheTruth) {
 class LintelVioCancelTest : public LintelVioTest {
  protected:
   /// The same run by the C++ interface, on one thread or two.
-  OdometryResult run(RunOptions options) {
+  OdometryResult run(const RunOptions& options) {
     Configuration configuration;
     readConfiguration(eurocConfig(), configuration);
     configuration.refinement.enabled = refine_;
@@ -256,7 +256,7 @@ ProgramRun runStoppedBy(int signal, const std::string& recording, const std::str
     while (!ended && !fs::exists(out + "/trajectory.partial.tum")) std::this_thread::yield();
     kill(getpid(), signal);
   });
-  const ProgramRun run = runVio(
+  ProgramRun run = runVio(
       {recording, "-o", out, "-c", eurocConfig(), "--export", "none", "--checkpoint", "0.001", "--threads", "1", "-q"});
   ended = true;
   sender.join();

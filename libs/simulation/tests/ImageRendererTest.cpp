@@ -30,6 +30,9 @@ Scene squareBeforeWall() {
 TEST(ImageRenderer, EdgesAreWhereTheCameraModelSays) {
   const Camera camera = eurocRig().camera;
   const Radiance image = ImageRenderer(squareBeforeWall(), camera).render(Pose{});
+  const auto at = [&](int x, int y) {
+    return static_cast<std::size_t>(y) * static_cast<std::size_t>(camera.width) + static_cast<std::size_t>(x);
+  };
   for (const double y : {-0.3, 0.0, 0.3}) {
     for (const double side : {-0.5, 0.5}) {
       const Eigen::Vector2d edge = camera.project({side, y, 3.0});
@@ -37,12 +40,12 @@ TEST(ImageRenderer, EdgesAreWhereTheCameraModelSays) {
       // the edge is nearly straight and upright: at the row's own height it is where it is at `row`
       const Eigen::Vector2d at_row = camera.project({side, y + (row - edge.y()) * 3.0 / camera.fy, 3.0});
       const int first = static_cast<int>(at_row.x()) - 8, last = first + 17;
-      const float dark = image[static_cast<std::size_t>(row * camera.width + (side < 0 ? last : first))];
-      const float light = image[static_cast<std::size_t>(row * camera.width + (side < 0 ? first : last))];
+      const float dark = image[at(side < 0 ? last : first, row)];
+      const float light = image[at(side < 0 ? first : last, row)];
       ASSERT_GT(light, 4 * dark);
       double light_pixels = 0;
       for (int x = first; x <= last; ++x) {
-        light_pixels += (image[static_cast<std::size_t>(row * camera.width + x)] - dark) / (light - dark);
+        light_pixels += (image[at(x, row)] - dark) / (light - dark);
       }
       const double found = side < 0 ? first - 0.5 + light_pixels : last + 0.5 - light_pixels;
       EXPECT_NEAR(found, at_row.x(), 0.2) << "row " << row;  // paint has 10 % of texture
@@ -67,7 +70,8 @@ TEST(ImageRenderer, RowsHaveTheirOwnPoses) {
   const Radiance both = renderer.render([&](int row) { return row < 240 ? upper : lower; });
   const Radiance of_upper = renderer.render(upper), of_lower = renderer.render(lower);
   const auto row = [&](const Radiance& image, int y) {
-    return Radiance(image.begin() + y * camera.width, image.begin() + (y + 1) * camera.width);
+    return Radiance(image.begin() + std::ptrdiff_t{y} * camera.width,
+                    image.begin() + std::ptrdiff_t{y + 1} * camera.width);
   };
   EXPECT_EQ(row(both, 230), row(of_upper, 230));
   EXPECT_EQ(row(both, 250), row(of_lower, 250));

@@ -26,7 +26,7 @@ class SimulationTest : public testing::Test {
     return params;
   }
   std::string write(const std::string& name, const SimulationParams& params) const {
-    const std::string folder = folder_ / name;
+    std::string folder = folder_ / name;
     Simulation(params).write(folder);
     return folder;
   }

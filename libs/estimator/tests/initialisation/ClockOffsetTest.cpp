@@ -70,9 +70,10 @@ Span sliding(double step_m, double noise_px) {
     for (TrackId id = 0; id < 40; ++id) {
       PointObservation p;
       p.id = id;
+      const TrackId row = id / 8;
       const double z = 3 + static_cast<double>(id % 7);
       p.ray = {(static_cast<double>(id % 8) - 4 + step_m * i) / z + noise(engine),
-               (static_cast<double>(id / 8) - 2.5) / z + noise(engine), 1};
+               (static_cast<double>(row) - 2.5) / z + noise(engine), 1};
       frame.points.push_back(p);
     }
     span.frames.push_back(frame);

@@ -23,7 +23,7 @@ SlidingWindow windowWithRails(int count) {
   SlidingWindow window = windowAt(kAhead);
   for (int i = 0; i < count; ++i) {
     const Eigen::Vector3d side(1.5 * std::cos(1.1 * i), 1.2 * std::sin(1.1 * i), 0);
-    seeEverywhere(window, static_cast<TrackId>(i + 1),
+    seeEverywhere(window, static_cast<TrackId>(i) + 1,
                   {side + Eigen::Vector3d(0, 0, 0.8), side + Eigen::Vector3d(0, 0, 30)});
   }
   triangulateLines(window, kParams);
@@ -95,7 +95,7 @@ TEST(ParallelGroups, ADirectionThatWasOnlyTriedDoesNotKeepALineFromItsOwn) {
   SlidingWindow window = windowAt({at(0, 0, 0), at(0.1, 0, 0), at(0.2, 0, 0), at(0.3, 0, 0), at(0.4, 0, 0)});
   for (int i = 0; i < 5; ++i) {
     const Eigen::Vector3d side(0, 0.8 * std::cos(1.3 * i), 3 + 0.5 * i);
-    seeEverywhere(window, static_cast<TrackId>(i + 1),
+    seeEverywhere(window, static_cast<TrackId>(i) + 1,
                   {side - Eigen::Vector3d(20, 0, 0), side + Eigen::Vector3d(20, 0, 0)});
   }
   seeEverywhere(window, 60, {{-0.3, 0, 2}, {0.5, 0, 2}});

@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 #include "TestWindow.h"
 
 namespace lintel {
@@ -18,9 +20,9 @@ std::shared_ptr<Preintegration> trembling(double gyro, double accel, double turn
   ImuBatch batch;
   for (int i = 0; i <= 10; ++i) {
     const double sign = i % 2 == 0 ? 1 : -1;
-    batch.push_back({i * 5'000'000, {turn_rad_s + sign * gyro, 0, 0}, {0, sign * accel, 9.81}});
+    batch.push_back({i * 5'000'000LL, {turn_rad_s + sign * gyro, 0, 0}, {0, sign * accel, 9.81}});
   }
-  const auto imu = std::make_shared<Preintegration>(ImuBias{}, ImuNoise{});
+  auto imu = std::make_shared<Preintegration>(ImuBias{}, ImuNoise{});
   imu->append(batch);
   return imu;
 }
@@ -61,7 +63,7 @@ class TremblingRest : public testing::Test {
   bool after(double seconds, double px_per_s, double turn_rad_s = 0, const EstimatorParams& params = {}) {
     RestDetection rest(params);
     bool at_rest = false;
-    for (int frame = 0; frame <= static_cast<int>(10 * seconds + 0.5); ++frame) {
+    for (int frame = 0; frame <= std::lround(10 * seconds); ++frame) {
       SlidingWindow window = resting(trembling(0.1, 1.5, turn_rad_s));
       window.frames.back().t_ns = frame * 100'000'000LL;
       window.frames.back().motion[kVelocityAt] = 0.2;  // what the vibration has made of the estimate
