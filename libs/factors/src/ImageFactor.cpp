@@ -37,7 +37,7 @@ template <class Target>
 bool ImageFactor<Target>::Evaluate(double const* const* parameters, double* residuals, double** jacobians) const {
   const CameraView view(parameters[0], parameters[1], parameters[2], motion_, jacobians != nullptr);
   ImageLinearisation<Target> l;
-  linearise(view, parameters[2], parameters[3], jacobians != nullptr, l);
+  linearise(view, parameters[2], typename Target::Value(parameters[3]), jacobians != nullptr, l);
   Eigen::Map<Eigen::Matrix<double, Target::kRows, 1>>{residuals} = l.residual;
   if (!jacobians) return true;
   if (jacobians[0]) writePose(l, view.d_pose, parameters[0], jacobians[0]);

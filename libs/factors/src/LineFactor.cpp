@@ -8,12 +8,19 @@
 
 namespace lintel {
 
-void LineResidual::linearise(const CameraView& view, const double* correction, const double* line_block, bool jacobians,
+LineAxes::LineAxes(const double* block) {
+  const OrthonormalLine line = lineFromBlock(block);
+  U = line.U.toRotationMatrix();
+  cosine = std::cos(line.phi);
+  sine = std::sin(line.phi);
+  n_w = cosine * U.col(0);
+  d_w = sine * U.col(1);
+}
+
+void LineResidual::linearise(const CameraView& view, const double* correction, const LineAxes& line, bool jacobians,
                              LineLinearisation& out) const {
-  const OrthonormalLine line = lineFromBlock(line_block);
-  const Eigen::Matrix3d U = line.U.toRotationMatrix();
-  const double cosine = std::cos(line.phi), sine = std::sin(line.phi);
-  const Eigen::Vector3d n_w = cosine * U.col(0), d_w = sine * U.col(1), from_camera_w = origin_w - view.p_w_c;
+  const auto& [U, cosine, sine, n_w, d_w] = line;
+  const Eigen::Vector3d from_camera_w = origin_w - view.p_w_c;
   const Eigen::Vector3d l = view.R_c_w * (n_w + from_camera_w.cross(d_w));  // moment about the camera, its axes
   const Eigen::Vector3d ends[2] = {start.corrected(correction), end.corrected(correction)};
   const LineDistances distances(ends, l, 1, start.wide);

@@ -7,8 +7,8 @@
 
 namespace lintel {
 
-void PointFactor::linearise(const CameraView& view, const double* correction, const double* point, bool jacobians,
-                            PointLinearisation& out) const {
+void PointFactor::linearise(const CameraView& view, const double* correction, const double* const& point,
+                            bool jacobians, PointLinearisation& out) const {
   const Eigen::Vector3d X = Eigen::Vector3d::Map(point);
   const double w = point[3];
   const Camera camera = correctedCamera(camera_, correction);

@@ -7,7 +7,7 @@
 
 namespace lintel {
 
-void VanishingFactor::linearise(const CameraView& view, const double* correction, const double* direction,
+void VanishingFactor::linearise(const CameraView& view, const double* correction, const double* const& direction,
                                 bool jacobians, DirectionLinearisation& out) const {
   const Eigen::Vector3d start = start_.corrected(correction), end = end_.corrected(correction);
   const Eigen::Vector3d cross = start.cross(end), d_c = view.R_c_w * Eigen::Vector3d::Map(direction);

@@ -36,8 +36,9 @@ class LineResiduals {
   NormalEquations4 linearise(const LineBlock& line) const {
     NormalEquations4 normal;
     LineLinearisation l;
+    const LineAxes axes(line.data());
     for (const Factor& factor : factors_) {
-      factor.residual.linearise(factor.view, correction_, line.data(), true, l);
+      factor.residual.linearise(factor.view, correction_, axes, true, l);
       double rho[3];
       loss_.Evaluate(l.residual.squaredNorm(), rho);
       normal.add(l.d_target, l.residual, rho[1]);
@@ -91,12 +92,12 @@ void refine(const LineResiduals& residuals, LineTrack& track, const KnownDirecti
   levenbergMarquardt(levenberg, track.line, linearise, moved);
 }
 
-/// The ends of a sighting on the line, in the camera's frame. How many of them are in front of it.
-int endsInCamera(const CameraPoses& poses, const CameraView& view, const LineTrack& track, const LineSighting& s,
-                 Eigen::Vector3d ends_c[2]) {
-  const PluckerLine line = lineFromBlock(track.line.data()).plucker();
-  const Eigen::Vector3d d_c = view.R_c_w * line.d;
-  const Eigen::Vector3d p_c = view.R_c_w * (track.origin_w + line.nearestPoint() - view.p_w_c);
+/// The ends of a sighting on a line, in the camera's frame. How many of them are in front of it. `foot_w`: a point of
+/// the line.
+int endsInCamera(const CameraPoses& poses, const CameraView& view, const Eigen::Vector3d& foot_w,
+                 const Eigen::Vector3d& d_w, const LineSighting& s, Eigen::Vector3d ends_c[2]) {
+  const Eigen::Vector3d d_c = view.R_c_w * d_w;
+  const Eigen::Vector3d p_c = view.R_c_w * (foot_w - view.p_w_c);
   const PluckerLine line_c{p_c.cross(d_c), d_c};
   const Eigen::Vector3d seen[2] = {s.start.corrected(poses.correction()), s.end.corrected(poses.correction())};
   int in_front = 0;
@@ -114,9 +115,10 @@ SeenMiddle middleOf(const CameraPoses& poses, const LineTrack& track) {
   const LineSighting& newest = track.sightings.back();
   Eigen::Vector3d ends_c[2] = {Eigen::Vector3d::UnitZ(), Eigen::Vector3d::UnitZ()};
   const CameraView& view = poses.view(newest.frame);
-  endsInCamera(poses, view, track, newest, ends_c);
+  const PluckerLine line = lineFromBlock(track.line.data()).plucker();
+  endsInCamera(poses, view, track.origin_w + line.nearestPoint(), line.d, newest, ends_c);
   const Eigen::Vector3d middle_w = view.R_c_w.transpose() * (0.5 * (ends_c[0] + ends_c[1])) + view.p_w_c;
-  const Eigen::Vector3d d_w = lineFromBlock(track.line.data()).plucker().d.normalized();
+  const Eigen::Vector3d d_w = line.d.normalized();
   const double depth_m =
       poses.camera().wide() ? (0.5 * (ends_c[0] + ends_c[1])).norm() : 0.5 * (ends_c[0].z() + ends_c[1].z());
   return {(middle_w - track.origin_w).dot(d_w), std::max(depth_m, 0.1)};
@@ -162,11 +164,14 @@ double lineError(const CameraPoses& poses, const LineTrack& track) {
   Eigen::Vector3d ends[2];
   // a line along the motion may end in its own vanishing point, where noise decides what is in front
   const int least_in_front = track.group != 0 ? 1 : 2;
+  const LineAxes axes(track.line.data());
+  const Eigen::Vector3d foot_w = track.origin_w + PluckerLine{axes.n_w, axes.d_w}.nearestPoint();
   for (const LineSighting& s : track.sightings) {
     const CameraView& view = poses.view(s.frame);
-    if (endsInCamera(poses, view, track, s, ends) < least_in_front) return std::numeric_limits<double>::infinity();
+    if (endsInCamera(poses, view, foot_w, axes.d_w, s, ends) < least_in_front)
+      return std::numeric_limits<double>::infinity();
     LineLinearisation l;
-    LineResidual{s.start, s.end, track.origin_w, 1}.linearise(view, poses.correction(), track.line.data(), false, l);
+    LineResidual{s.start, s.end, track.origin_w, 1}.linearise(view, poses.correction(), axes, false, l);
     sum += 0.5 * l.residual.cwiseAbs().sum();
   }
   return track.sightings.empty() ? 0 : sum / static_cast<double>(track.sightings.size());

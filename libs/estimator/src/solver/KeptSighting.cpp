@@ -7,7 +7,8 @@ template <class Target>
 double KeptSighting<Target>::cost(const std::vector<CameraView>& views, const double* correction,
                                   const CameraLayout& layout) const {
   ImageLinearisation<Target> l;
-  factor->linearise(views[static_cast<std::size_t>(camera)], correction, layout.block(target), false, l);
+  factor->linearise(views[static_cast<std::size_t>(camera)], correction, typename Target::Value(layout.block(target)),
+                    false, l);
   double weight;
   return robustCost(loss, l.residual.squaredNorm(), weight);
 }
@@ -17,7 +18,8 @@ double KeptSighting<Target>::linearise(const std::vector<CameraView>& views, con
                                        const CameraLayout& layout, CameraEquations& eq) const {
   constexpr int T = Target::kTangent, kTargetAt = kCameraTangent + kSightingCorrection, N = kTargetAt + T;
   ImageLinearisation<Target> l;
-  factor->linearise(views[static_cast<std::size_t>(camera)], correction, layout.block(target), true, l);
+  factor->linearise(views[static_cast<std::size_t>(camera)], correction, typename Target::Value(layout.block(target)),
+                    true, l);
   double weight;
   const double cost = robustCost(loss, l.residual.squaredNorm(), weight);
 

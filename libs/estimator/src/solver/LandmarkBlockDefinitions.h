@@ -87,9 +87,10 @@ double LandmarkBlock<Target>::cost(const std::vector<CameraView>& views, const d
                                    const CameraLayout& layout, LandmarkScratch& scratch) const {
   scratch.whitened.resize(sightings.size());
   ImageLinearisation<Target> l;
+  const typename Target::Value value(block);
   for (std::size_t i = 0; i < sightings.size(); ++i) {
     const Sighting& s = sightings[i];
-    s.factor->linearise(views[static_cast<std::size_t>(s.camera)], correction, block, false, l);
+    s.factor->linearise(views[static_cast<std::size_t>(s.camera)], correction, value, false, l);
     scratch.whitened[i] = l.residual;
   }
   whitener.whiten(landmark_block::numbersOf(scratch.whitened), 2);
@@ -144,8 +145,9 @@ void LandmarkBlock<Target>::takeRows(const std::vector<CameraView>& views, const
   scratch.camera_rows.resize(n);
   scratch.residuals.resize(n);
   ImageLinearisation<Target> l;
+  const typename Target::Value value(block);
   for (std::size_t i = 0; i < n; ++i) {
-    sightings[i].factor->linearise(views[static_cast<std::size_t>(sightings[i].camera)], correction, block, true, l);
+    sightings[i].factor->linearise(views[static_cast<std::size_t>(sightings[i].camera)], correction, value, true, l);
     SightingRows& rows = scratch.rows[i];
     rows.template leftCols<T>() = landmark_block::tangentJacobian(l, plus);
     if constexpr (T < kTargetColumns) rows.template middleCols<kTargetColumns - T>(T).setZero();

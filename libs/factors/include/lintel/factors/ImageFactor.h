@@ -9,16 +9,30 @@
 
 namespace lintel {
 
-// What an image may see: rows of its residuals, sizes of its block, and with respect to what `d_target` is.
+/// A line as residuals use it, worked out once for all that see it: U and phi of its block, the moment about its origin
+/// and the direction.
+struct LineAxes {
+  Eigen::Matrix3d U;
+  double cosine, sine;  ///< of phi
+  Eigen::Vector3d n_w, d_w;
+
+  explicit LineAxes(const double* block);
+};
+
+// What an image may see: rows of its residuals, sizes of its block, with respect to what `d_target` is, and what
+// residuals are given of the block.
 struct PointTarget {
+  using Value = const double*;
   static constexpr int kRows = 2, kSize = kPointSize, kTangent = kPointTangent;
   static constexpr int kColumns = kPointSize;  ///< ambient
 };
 struct LineTarget {
+  using Value = LineAxes;
   static constexpr int kRows = 2, kSize = kLineSize, kTangent = kLineTangent;
   static constexpr int kColumns = kLineTangent;  ///< tangent
 };
 struct DirectionTarget {
+  using Value = const double*;
   static constexpr int kRows = 1, kSize = kDirectionSize, kTangent = kDirectionTangent;
   static constexpr int kColumns = kDirectionSize;  ///< ambient
 };
@@ -41,9 +55,9 @@ template <class Target>
 class ImageFactor
     : public ceres::SizedCostFunction<Target::kRows, kPoseSize, kPoseSize, kCorrectionSize, Target::kSize> {
  public:
-  /// The residual seen from a camera that is known already; Jacobians only when asked for. `target`: its block.
-  virtual void linearise(const CameraView& view, const double* correction, const double* target, bool jacobians,
-                         ImageLinearisation<Target>& out) const = 0;
+  /// The residual seen from a camera that is known already; Jacobians only when asked for. `target`: of its block.
+  virtual void linearise(const CameraView& view, const double* correction, const typename Target::Value& target,
+                         bool jacobians, ImageLinearisation<Target>& out) const = 0;
 
   /// Of the body at the time of the image.
   const FrameMotion& motion() const { return motion_; }

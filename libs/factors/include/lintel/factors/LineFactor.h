@@ -19,7 +19,7 @@ struct LineResidual {
   const Eigen::Vector3d& origin_w;
   double weight;  ///< 1 / the sightings' standard deviation [px]
 
-  void linearise(const CameraView& view, const double* correction, const double* line, bool jacobians,
+  void linearise(const CameraView& view, const double* correction, const LineAxes& line, bool jacobians,
                  LineLinearisation& out) const;
 };
 
@@ -29,7 +29,7 @@ class LineFactor final : public ImageFactor<LineTarget> {
   LineFactor(const LineEnd& start, const LineEnd& end, const FrameMotion& motion, const Eigen::Vector3d& origin_w,
              double sigma_px)
       : ImageFactor(motion), start_(start), end_(end), origin_w_(origin_w), weight_(1 / sigma_px) {}
-  void linearise(const CameraView& view, const double* correction, const double* line, bool jacobians,
+  void linearise(const CameraView& view, const double* correction, const LineAxes& line, bool jacobians,
                  LineLinearisation& out) const override {
     LineResidual{start_, end_, origin_w_, weight_}.linearise(view, correction, line, jacobians, out);
   }

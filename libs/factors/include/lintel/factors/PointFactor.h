@@ -19,7 +19,7 @@ class PointFactor final : public ImageFactor<PointTarget> {
   PointFactor(const Eigen::Vector2d& px, const Camera& camera, const FrameMotion& motion,
               const Eigen::Vector3d& origin_w, double sigma_px, const RowTime& row = {})
       : ImageFactor(motion), px_(px), camera_(camera), origin_w_(origin_w), weight_(1 / sigma_px), row_(row) {}
-  void linearise(const CameraView& view, const double* correction, const double* point, bool jacobians,
+  void linearise(const CameraView& view, const double* correction, const double* const& point, bool jacobians,
                  PointLinearisation& out) const override;
 
  private:

@@ -17,7 +17,7 @@ class VanishingFactor final : public ImageFactor<DirectionTarget> {
  public:
   VanishingFactor(const RayObservation& start, const RayObservation& end, const FrameMotion& motion, double weight)
       : ImageFactor(motion), start_(start), end_(end), weight_(weight) {}
-  void linearise(const CameraView& view, const double* correction, const double* direction, bool jacobians,
+  void linearise(const CameraView& view, const double* correction, const double* const& direction, bool jacobians,
                  DirectionLinearisation& out) const override;
 
  private:
