@@ -18,8 +18,8 @@ class LineSupportTest : public testing::Test {
     material_.keyframes.emplace_back();
   }
 
-  SegmentView viewOf(std::vector<EdgeSegment> edges) const { return {cameras_(), 0, std::move(edges)}; }
-  const KeyframeCameras& cameras_() const {
+  SegmentView viewOf(std::vector<EdgeSegment> edges) const { return {cameras(), 0, std::move(edges)}; }
+  const KeyframeCameras& cameras() const {
     if (!made_) made_.emplace(material_);
     return *made_;
   }

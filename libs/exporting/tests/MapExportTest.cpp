@@ -96,7 +96,7 @@ TEST_F(MapExport, GlbGivesTheSameSegmentsBackUnderNamedNodes) {
   expectSameSegments(lines.segments, true);
   const Reimported all = reimport(in("map.glb"));
   EXPECT_EQ(all.points.size(), 300u);
-  EXPECT_EQ(all.segments.size(), kRoom.lines.size() + 20 * 8 + 199);
+  EXPECT_EQ(all.segments.size(), kRoom.lines.size() + std::size_t{20} * 8 + 199);
   EXPECT_THAT(all.nodes, ::testing::IsSupersetOf({"Map", "Lines", "Lines no group", "Lines group 0", "Lines group 2",
                                                   "Points", "Keyframes", "Trajectory"}));
   params.style = LineStyle::kTubes;

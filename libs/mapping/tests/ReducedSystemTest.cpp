@@ -37,6 +37,7 @@ Eigen::MatrixXd jacobian() {
 TEST(ReducedSystem, ErrorsAreDrawnAsTheWholeSystemSays) {
   const Eigen::MatrixXd J = jacobian();
   std::vector<double> weights;
+  weights.reserve(static_cast<std::size_t>(J.rows()));
   for (int r = 0; r < J.rows(); ++r) weights.push_back(r % 3 == 0 ? 0.5 : 2);
   const Eigen::VectorXd w = Eigen::VectorXd::Map(weights.data(), J.rows());
   const Eigen::MatrixXd whole = (J.transpose() * w.asDiagonal() * J).inverse();

@@ -14,17 +14,22 @@ class LoopStageTest : public testing::Test {
  protected:
   static constexpr double kWall_m = 4, kPixels_m = 100;
 
+  /// Place of a pixel in an image of that width.
+  static std::size_t at(int u, int v, int wide) {
+    return static_cast<std::size_t>(v) * static_cast<std::size_t>(wide) + static_cast<std::size_t>(u);
+  }
+
   LoopStageTest() {
     rig_.camera = {752, 480, 400, 400, 376, 240, 0, 0, 0, 0};
     rig_.T_b_c.q = Eigen::Quaterniond(Eigen::AngleAxisd(-M_PI / 2, Eigen::Vector3d::UnitX()));  // y down, z forward
     std::mt19937 random(9);
-    wall_.resize(kWide * kHigh);
+    wall_.resize(at(0, kHigh, kWide));
     for (int i = 0; i < 6000; ++i) {
       const int x = static_cast<int>(random() % (kWide - 40)), y = static_cast<int>(random() % (kHigh - 40));
       const int wide = 8 + static_cast<int>(random() % 30), high = 8 + static_cast<int>(random() % 30);
       const auto grey = static_cast<std::uint8_t>(random());
       for (int v = y; v < y + high; ++v)
-        for (int u = x; u < x + wide; ++u) wall_[static_cast<std::size_t>(v * kWide + u)] = grey;
+        for (int u = x; u < x + wide; ++u) wall_[at(u, v, kWide)] = grey;
     }
   }
 
@@ -33,11 +38,10 @@ class LoopStageTest : public testing::Test {
 
   Frame frameAt(std::int64_t t_ns, double x_m) const {
     auto image = std::make_shared<GrayImage>();
-    *image = {752, 480, std::vector<std::uint8_t>(752 * 480)};
+    *image = {752, 480, std::vector<std::uint8_t>(at(0, 480, 752))};
     const int shift = static_cast<int>(std::lround(x_m * kPixels_m));
     for (int v = 0; v < 480; ++v)
-      for (int u = 0; u < 752; ++u)
-        image->pixels[static_cast<std::size_t>(v * 752 + u)] = wall_[static_cast<std::size_t>(v * kWide + u + shift)];
+      for (int u = 0; u < 752; ++u) image->pixels[at(u, v, 752)] = wall_[at(u + shift, v, kWide)];
     return {t_ns, image};
   }
 
@@ -56,7 +60,8 @@ class LoopStageTest : public testing::Test {
       material.trajectory.emplace_back(t_ns, update.T_w_b);
       std::vector<PointObservation> tracked;
       for (int k = 0; k < 400; ++k) {
-        const Eigen::Vector3d p_w(0.3 * (k % 40) - 2, kWall_m, 0.3 * (k / 40) - 1.5);
+        const int column = k % 40, row = k / 40;
+        const Eigen::Vector3d p_w(0.3 * column - 2, kWall_m, 0.3 * row - 1.5);
         const Eigen::Vector3d p_c = rig_.T_b_c.inverse() * (p_w - Eigen::Vector3d(x_m, 0, 0));
         const Eigen::Vector2d px = rig_.camera.project(p_c);
         if (!rig_.camera.contains(px, 20)) continue;

@@ -36,7 +36,7 @@ class Euroc2RawlogTest : public testing::Test {
                       "accelerometer_noise_density: 1e-3\naccelerometer_random_walk: 1e-3\n");
     folder_.write("in/mav0/imu0/data.csv", "1000000000,0,0,0,0,0,9.8\n1055000000,0,0,0,0,0,9.8\n");
   }
-  int run(std::vector<std::string> arguments) {
+  int run(const std::vector<std::string>& arguments) {
     std::vector<const char*> argv = {"euroc2rawlog"};
     for (const std::string& argument : arguments) argv.push_back(argument.c_str());
     out_.str("");

@@ -37,7 +37,7 @@ class LintelMapTest : public ::testing::Test {
   std::string in(const std::string& name) const { return folder_ / name; }
   bool exists(const std::string& name) const { return std::filesystem::exists(in(name)); }
 
-  int run(std::vector<std::string> arguments) {
+  int run(const std::vector<std::string>& arguments) {
     std::vector<const char*> argv{"lintel-map"};
     for (const std::string& argument : arguments) argv.push_back(argument.c_str());
     out_.str(""), err_.str("");

@@ -48,6 +48,7 @@ TEST(PointsTurn, TranslationIsNoRotation) {
 TEST(PointsTurn, NothingIsSaidOfFewOrUnrelatedPoints) {
   EXPECT_FALSE(turnOfPoints(std::vector<TwoViewPair>(14), kTwoViews));
   std::vector<TwoViewPair> pairs;
+  pairs.reserve(60);
   for (int i = 0; i < 60; ++i)
     pairs.push_back(
         {{0.7 * std::sin(3.1 * i), 0.5 * std::sin(5.3 * i), 1}, {0.7 * std::sin(7.7 * i), 0.5 * std::sin(9.1 * i), 1}});

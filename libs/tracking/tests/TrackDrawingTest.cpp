@@ -35,7 +35,7 @@ TEST(TrackDrawing, drawsPointsAndLinesInColour) {
   const cv::Mat drawn = cv::imread(path);
   ASSERT_EQ(drawn.cols, 2 * rig.camera.width);
   const auto coloured = [&](const Eigen::Vector2d& px) {
-    const cv::Vec3b c = drawn.at<cv::Vec3b>(static_cast<int>(2 * px.y()), static_cast<int>(2 * px.x()));
+    const cv::Vec3b& c = drawn.at<cv::Vec3b>(static_cast<int>(2 * px.y()), static_cast<int>(2 * px.x()));
     return std::max({c[0], c[1], c[2]}) - std::min({c[0], c[1], c[2]}) > 100;
   };
   EXPECT_TRUE(coloured(point.px));

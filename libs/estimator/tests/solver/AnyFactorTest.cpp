@@ -67,6 +67,7 @@ int sizeOf(const BlockKey& key) { return manifoldOf(key.kind)->AmbientSize(); }
 
 std::unique_ptr<ceres::CostFunction> mixOf(const std::vector<BlockKey>& blocks) {
   std::vector<int> sizes;
+  sizes.reserve(blocks.size());
   for (const BlockKey& key : blocks) sizes.push_back(sizeOf(key));
   return std::make_unique<MixFactor>(sizes);
 }
@@ -106,7 +107,7 @@ class AnyFactorTest : public testing::Test {
                   {{BlockKey::kMotion, window_.frames.front().id}});
   }
 
-  void addMix(std::vector<BlockKey> blocks, const ceres::LossFunction* loss = nullptr) {
+  void addMix(const std::vector<BlockKey>& blocks, const ceres::LossFunction* loss = nullptr) {
     factors_->add(mixOf(blocks), blocks, loss);
   }
 

@@ -11,7 +11,8 @@ namespace {
 
 Eigen::MatrixXd randomMatrix(Eigen::Index rows, Eigen::Index columns, std::mt19937& random) {
   Eigen::MatrixXd m(rows, columns);
-  for (double& value : m.reshaped()) value = 2.0 * random() / std::mt19937::max() - 1;
+  for (double& value : m.reshaped())
+    value = 2 * static_cast<double>(random()) / static_cast<double>(std::mt19937::max()) - 1;
   return m;
 }
 

@@ -56,7 +56,7 @@ PlacementCheck checkOf(int frames, int points, int placed, double step_m) {
   SlidingWindow window = windowAt({at(0, 0, 0), at(step_m, 0, 0), at(2 * step_m, 0, 0)});
   for (int i = 0; i < points; ++i)
     for (FrameId frame = 0; frame < 3; ++frame)
-      seePoint(window, static_cast<TrackId>(i + 1), frame, {0.1 * i, 0.1 * (i % 3), 5});
+      seePoint(window, static_cast<TrackId>(i) + 1, frame, {0.1 * i, 0.1 * (i % 3), 5});
   int i = 0;
   for (auto& [id, track] : window.points) track.triangulated = i++ % 10 < placed;
   PlacementCheck check;

@@ -219,10 +219,11 @@ TEST(MarginaliseSecondNewest, KeepsWhatPriorsKnewThroughTheFrame) {
   SlidingWindow window = flownWindow();
   WindowPrior both;  // ties the motions of frames 5 and 6 together
   both.blocks = {{BlockKey::kMotion, 5}, {BlockKey::kMotion, 6}};
-  Eigen::MatrixXd A = Eigen::MatrixXd::Identity(2 * kMotionSize, 2 * kMotionSize);
+  constexpr Eigen::Index kSize = Eigen::Index{2} * kMotionSize;
+  Eigen::MatrixXd A = Eigen::MatrixXd::Identity(kSize, kSize);
   const auto manifold = manifoldOf(BlockKey::kMotion);
   std::vector<PriorBlock> blocks{{manifold, window.frames[5].motion}, {manifold, window.frames[6].motion}};
-  both.factor = std::make_shared<PriorFactor>(blocks, A, Eigen::VectorXd::Zero(2 * kMotionSize));
+  both.factor = std::make_shared<PriorFactor>(blocks, A, Eigen::VectorXd::Zero(kSize));
   window.priors = {both, motionPrior(window, 2)};
   marginaliseSecondNewest(window);
   ASSERT_EQ(window.priors.size(), 2u);

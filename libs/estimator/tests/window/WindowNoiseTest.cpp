@@ -38,7 +38,7 @@ class WindowNoiseTest : public testing::Test {
       const ImuBatch batch = next();
       noise.add(batch);
       WindowFrame frame;
-      frame.id = static_cast<FrameId>(k + 1);
+      frame.id = static_cast<FrameId>(k) + 1;
       frame.imu = std::make_shared<Preintegration>(ImuBias{}, noise.now());
       frame.imu->append(batch);
       window.frames.push_back(frame);
