@@ -166,7 +166,7 @@ TEST_F(ViewerPage, ShowsColouredLinesWithoutAWordOnTheConsole) {
   int red = 0, green = 0, blue = 0;  // groups 0, 1, 2
   for (int y = 0; y < shot.rows; ++y) {
     for (int x = shot.cols / 3; x < shot.cols; ++x) {  // beside the panel
-      const cv::Vec3b p = shot.at<cv::Vec3b>(y, x);
+      const cv::Vec3b& p = shot.at<cv::Vec3b>(y, x);
       red += p[2] > 150 && p[1]<90, green += p[1]> 120 && p[2]<90, blue += p[0]> 150 && p[2] < 90;
     }
   }

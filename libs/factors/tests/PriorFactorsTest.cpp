@@ -58,9 +58,10 @@ struct GaugeFreePrior {
     for (int i = 0; i < 8; ++i)
       for (int k = 0; k < n; ++k) A(i, k) = std::sin(1 + 3.7 * i + 1.3 * k * k);
     for (int k = 0; k < 2; ++k) {
-      G.block<3, 3>(6 * k, 0).setIdentity();
-      G.block<3, 1>(6 * k, 3) = Eigen::Vector3d::UnitZ().cross(poses_0[k].p);
-      G.block<3, 1>(6 * k + 3, 3) = poses_0[k].q.conjugate() * Eigen::Vector3d::UnitZ();
+      const Eigen::Index at = Eigen::Index{kPoseTangent} * k;
+      G.block<3, 3>(at, 0).setIdentity();
+      G.block<3, 1>(at, 3) = Eigen::Vector3d::UnitZ().cross(poses_0[k].p);
+      G.block<3, 1>(at + 3, 3) = poses_0[k].q.conjugate() * Eigen::Vector3d::UnitZ();
     }
     G.block<3, 1>(12, 3) = Eigen::Vector3d::UnitZ().cross(velocityOf(motion_0.data()));
     Eigen::Matrix<double, kPointSize, 4> moved = Eigen::Matrix<double, kPointSize, 4>::Zero();

@@ -13,6 +13,7 @@ const Eigen::Vector3d kPoint(1, 2, 5), kDirection = Eigen::Vector3d(1, -0.3, 0.2
 /// The planes in which cameras in these places see the line.
 std::vector<ObservationPlane> planesFrom(const std::vector<Eigen::Vector3d>& centres) {
   std::vector<ObservationPlane> planes;
+  planes.reserve(centres.size());
   for (const Eigen::Vector3d& c : centres) planes.push_back({(kPoint - c).cross(kDirection).normalized(), c});
   return planes;
 }

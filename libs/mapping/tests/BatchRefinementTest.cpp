@@ -241,7 +241,7 @@ TEST_F(BatchRefinementTest, LinesOfAGroupShareTheirDirection) {
   const LineMap map = drawMap({}, material_);
   const auto members = std::count_if(map.lines.begin(), map.lines.end(), [](const MapLine& l) { return l.group >= 0; });
   ASSERT_GE(members, 5);
-  EXPECT_GE(with.residuals, without.residuals + 2 * 5) << "two residuals each";
+  EXPECT_GE(with.residuals, without.residuals + std::size_t{2} * 5) << "two residuals each";
   EXPECT_LT(error(material_), 1.05 * error(free));
 }
 

@@ -74,7 +74,7 @@ TEST(BodyErrors, WhatMovesTheTrajectoryAsAWholeIsNoError) {
   std::vector<std::int64_t> times;
   for (int k = 0; k < 6; ++k) {
     poses.push_back({expRotation({0.1 * k, 0.2, -0.1 * k}), {0.5 * k, 0.1 * k * k, std::sin(k)}});
-    times.push_back(k * 100);
+    times.push_back(k * std::int64_t{100});
   }
   BodyErrors body(poses, times);
   const Vector3d shift(0.3, -0.2, 0.1), turn(1e-3, 2e-3, -3e-3);

@@ -22,6 +22,7 @@ std::vector<RetiredKeyframe> keyframes(std::size_t n) {
 
 std::vector<std::size_t> mains(const std::vector<Anchors>& anchors) {
   std::vector<std::size_t> result;
+  result.reserve(anchors.size());
   for (const Anchors& a : anchors) result.push_back(a.main);
   return result;
 }

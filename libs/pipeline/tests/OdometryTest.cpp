@@ -28,7 +28,7 @@ class BlackRecording : public test::MadeRecording {
   Eigen::Vector3d gyroAt(double) const override { return Eigen::Vector3d::Zero(); }
 
   std::shared_ptr<const GrayImage> image_ =
-      std::make_shared<GrayImage>(GrayImage{160, 120, std::vector<std::uint8_t>(160 * 120, 0)});
+      std::make_shared<GrayImage>(GrayImage{160, 120, std::vector<std::uint8_t>(std::size_t{160} * 120, 0)});
 };
 
 class OdometryTest : public testing::TestWithParam<int> {  // threads

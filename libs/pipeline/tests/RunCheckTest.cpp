@@ -24,7 +24,8 @@ std::string verdictOf(double gravity, double acceleration, std::size_t resets = 
                       const Rig& estimated = givenRig(), double jump_m = 0, int frames = 100) {
   RunCheck check{givenRig()};
   OdometryStatistics statistics;
-  const auto image = std::make_shared<GrayImage>(GrayImage{64, 64, std::vector<std::uint8_t>(64 * 64, 100)});
+  const auto image =
+      std::make_shared<GrayImage>(GrayImage{64, 64, std::vector<std::uint8_t>(std::size_t{64} * 64, 100)});
   std::int64_t t_ns = 1'000'000'000;
   statistics.first_frame_ns = t_ns;
   statistics.first_start_s = 0;
@@ -34,7 +35,7 @@ std::string verdictOf(double gravity, double acceleration, std::size_t resets = 
     ImuBatch& imu = tracked.step.imu;
     for (int i = 0; i <= 20; ++i) {
       ImuSample sample;
-      sample.t_ns = t_ns + 5'000'000 * i;
+      sample.t_ns = t_ns + std::int64_t{5'000'000} * i;
       sample.accel.z() = gravity + 0.02 * std::sin(97.0 * (i + 20 * frame));
       imu.push_back(sample);
     }
@@ -78,7 +79,8 @@ TEST(RunCheck, AFailureWithoutDataIsNoDivergence) {
   for (const Failure failure : {Failure::kInterrupted, Failure::kWrongStart, Failure::kDiverged}) {
     RunCheck check{givenRig()};
     TrackedFrame tracked;
-    tracked.step.frame.image = std::make_shared<GrayImage>(GrayImage{64, 64, std::vector<std::uint8_t>(64 * 64, 100)});
+    tracked.step.frame.image =
+        std::make_shared<GrayImage>(GrayImage{64, 64, std::vector<std::uint8_t>(std::size_t{64} * 64, 100)});
     WindowUpdate update;
     check.add(tracked, update);
     update.t_ns = 2'500'000'000;
@@ -118,6 +120,7 @@ std::string verdictWithAccelerometer(bool swapped, double jump_m) {
   RunCheck check{givenRig()};
   OdometryStatistics statistics;
   std::vector<std::uint8_t> pixels;
+  pixels.reserve(std::size_t{64} * 64);
   for (int k = 0; k < 64 * 64; ++k) pixels.push_back(static_cast<std::uint8_t>(37 * k % 251));
   for (int frame = 0; frame < 300; ++frame) {
     TrackedFrame tracked;

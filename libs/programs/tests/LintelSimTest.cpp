@@ -22,7 +22,7 @@ namespace fs = std::filesystem;
 
 class LintelSimTest : public testing::Test {
  protected:
-  int run(std::vector<std::string> arguments) {
+  int run(const std::vector<std::string>& arguments) {
     std::vector<const char*> argv{"lintel-sim"};
     for (const std::string& a : arguments) argv.push_back(a.c_str());
     out_.str("");

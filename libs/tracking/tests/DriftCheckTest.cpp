@@ -16,7 +16,7 @@ std::vector<PointObservation> frame(int index, double drift_px) {
   for (int i = 0; i < 40; ++i) {
     const double depth = 2 + 4 * std::fmod(i * 0.618, 1.0);
     PointObservation p;
-    p.id = static_cast<TrackId>(i + 1);
+    p.id = static_cast<TrackId>(i) + 1;
     p.ray = {-0.7 + 0.035 * i - 0.02 * index / depth, 0.4 * std::sin(1.7 * i), 1};
     if (p.id == 7 || p.id == 20) p.ray.y() += drift_px * index / 460;
     points.push_back(p);

@@ -41,6 +41,7 @@ Eigen::VectorXd residualAt(SlidingWindow& window, const WindowPrior& prior, cons
     moved.push_back(x);
     at += manifold->TangentSize();
   }
+  pointers.reserve(moved.size());
   for (const Eigen::VectorXd& x : moved) pointers.push_back(x.data());
   Eigen::VectorXd r(prior.factor->num_residuals());
   prior.factor->Evaluate(pointers.data(), r.data(), nullptr);

@@ -33,11 +33,13 @@ class WindowRetirementTest : public testing::Test {
   template <class Retired>
   static std::vector<TrackId> ids(const std::vector<Retired>& retired) {
     std::vector<TrackId> result;
+    result.reserve(retired.size());
     for (const Retired& r : retired) result.push_back(r.id);
     return result;
   }
   static std::vector<FrameId> framesOf(const std::vector<PointSighting>& sightings) {
     std::vector<FrameId> result;
+    result.reserve(sightings.size());
     for (const PointSighting& s : sightings) result.push_back(s.frame);
     return result;
   }
