@@ -30,8 +30,8 @@ double lossWeight(const ceres::LossFunction* loss, double squared, double& robus
 
 LinearFactor lineariseFactor(SlidingWindow& window, const Factor& factor,
                              const std::map<BlockKey, Eigen::Index>& offset, Eigen::Index size) {
-  const ceres::CostFunction& cost = *factor.cost;
   // NOLINTNEXTLINE(clang-analyzer-core.NullDereference): a factor has a cost
+  const ceres::CostFunction& cost = *factor.cost;
   const int rows = cost.num_residuals();
   std::vector<const double*> blocks;
   std::vector<RowMajorMatrix> ambient;

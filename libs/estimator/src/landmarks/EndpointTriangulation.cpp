@@ -29,7 +29,7 @@ SeenPoint triangulateEnd(const CameraPoses& poses, const LineTrack& track, bool 
   std::vector<std::pair<Pose, Eigen::Vector3d>> views;
   for (const LineSighting& s : track.sightings) {
     if (!poses.camera().contains(start ? s.start_px : s.end_px, kBorder_px)) continue;
-    const Pose T_w_c = poses.T_w_c(s.frame);
+    const Pose& T_w_c = poses.T_w_c(s.frame);
     const Eigen::Vector3d seen = (start ? s.start : s.end).corrected(poses.correction());
     const Eigen::Vector3d ray = T_w_c.q * seen.normalized();
     const Eigen::Matrix3d across = Eigen::Matrix3d::Identity() - ray * ray.transpose();

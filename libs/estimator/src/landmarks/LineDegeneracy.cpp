@@ -33,7 +33,7 @@ double planeSigma(const CameraPoses& poses, const FactorParams& params, const Li
 
 double epipoleAngle(const CameraPoses& poses, const LineTrack& track) {
   const LineSighting& newest = track.sightings.back();
-  const Pose T_w_c = poses.T_w_c(newest.frame);
+  const Pose& T_w_c = poses.T_w_c(newest.frame);
   Eigen::Vector3d baseline_w = Eigen::Vector3d::Zero();
   for (const LineSighting& s : track.sightings) {
     const Eigen::Vector3d way_w = poses.T_w_c(s.frame).p - T_w_c.p;

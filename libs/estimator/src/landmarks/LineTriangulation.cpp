@@ -128,7 +128,7 @@ SeenMiddle middleOf(const CameraPoses& poses, const LineTrack& track) {
 bool startFromPlanes(const CameraPoses& poses, LineTrack& track) {
   std::vector<ObservationPlane> planes;
   for (const LineSighting& s : track.sightings) {
-    const Pose T_w_c = poses.T_w_c(s.frame);
+    const Pose& T_w_c = poses.T_w_c(s.frame);
     const Eigen::Vector3d start = s.start.corrected(poses.correction());
     const Eigen::Vector3d end = s.end.corrected(poses.correction());
     const Eigen::Vector3d cross = start.cross(end);

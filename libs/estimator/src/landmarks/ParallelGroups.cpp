@@ -75,7 +75,7 @@ void joinGroup(const CameraPoses& poses, LineTrack& track, std::uint64_t group, 
                double depth) {
   const LineSighting& newest = track.sightings.back();
   const Rays rays = raysOf(poses, newest);
-  const Pose T_w_c = poses.T_w_c(newest.frame);
+  const Pose& T_w_c = poses.T_w_c(newest.frame);
   const Eigen::Vector3d n_w = rays.start_w.cross(rays.end_w).normalized();
   const Eigen::Vector3d d = (d_w - d_w.dot(n_w) * n_w).normalized();
   Eigen::Vector3d p_w = T_w_c.p + depth * (rays.start_w + rays.end_w).normalized();
