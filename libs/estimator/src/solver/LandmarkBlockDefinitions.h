@@ -165,9 +165,10 @@ double LandmarkBlock<Target>::weighRows(LandmarkScratch& scratch) const {
   scratch.weighted_rows = scratch.rows;
   double* const rows = landmark_block::numbersOf(scratch.weighted_rows);
   whitener.whiten(rows, kColumns);
+  scratch.whitened.resize(sightings.size());
   for (std::size_t i = 0; i < sightings.size(); ++i)
-    scratch.residuals[i] = scratch.weighted_rows[i].col(kResidualColumn);
-  const double sum = whitenedCost(scratch.residuals, scratch.weights);
+    scratch.whitened[i] = scratch.weighted_rows[i].col(kResidualColumn);
+  const double sum = whitenedCost(scratch.whitened, scratch.weights);
   for (std::size_t i = 0; i < sightings.size(); ++i) scratch.weighted_rows[i] *= scratch.weights[i];
   whitener.whitenTransposed(rows, kColumns);
   return sum;
