@@ -38,6 +38,16 @@ if(LINTEL_PRECOMPILE)
   add_compile_options($<$<CXX_COMPILER_ID:GNU>:--param=ggc-min-heapsize=380000> $<$<CXX_COMPILER_ID:GNU>:--param=ggc-min-expand=30>)
 endif()
 
+# GNU gold links in a third of the time of ld. Packages are linked by the distribution's linker.
+option(LINTEL_GOLD "Build faster by linking with gold, where there is one" OFF)
+if(LINTEL_GOLD)
+  include(CheckLinkerFlag)
+  check_linker_flag(CXX -fuse-ld=gold LINTEL_HAS_GOLD)
+  if(LINTEL_HAS_GOLD)
+    add_link_options(-fuse-ld=gold)
+  endif()
+endif()
+
 # Several sources at a time: headers are read and templates that they share instantiated once.
 option(LINTEL_UNITY "Build faster by compiling sources of a room together" OFF)
 
