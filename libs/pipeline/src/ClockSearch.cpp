@@ -3,38 +3,67 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <vector>
 
 namespace lintel {
 
 namespace {
 
-constexpr double kLongest_s = 5;
-constexpr double kFirstTry_s = 1.5, kTryGrowth = 1.5;
+constexpr double kLongest_s = 5;  // of turning; and the tracks that are compared at a time
+constexpr double kFirstTry_s = 1.5, kTryGrowth = 1.5, kTriesApart_s = 2.5;
 constexpr double kGoodSigma_s = 0.002;
 constexpr double kLeftToEstimator_s = 0.005;  // its model is linear in the offset
 constexpr double kSignificant = 4;            // standard deviations
+constexpr double kLeastTurn_rad_s = 0.03;     // slower turns show the offset to tens of milliseconds only
+constexpr std::size_t kMostHeld_bytes = std::size_t{1} << 29;  // of images while the camera is still
+
+std::size_t bytesOf(const Frame& frame) { return frame.image ? frame.image->pixels.size() : 0; }
+
+/// How long the camera turned since the frame before; 0 where the images do not tell.
+double turningSeconds(const CameraTurn& turn) {
+  const double dt_s = 1e-9 * static_cast<double>(turn.to_ns - turn.from_ns);
+  return turn.known() && turn.rotation.norm() > kLeastTurn_rad_s * dt_s ? dt_s : 0;
+}
+
+/// The tracks and IMU samples of the last kLongest_s.
+struct Newest {
+  std::vector<FrameTracks> tracks;
+  ImuBatch imu;
+
+  void add(const TrackedFrame& frame) {
+    tracks.push_back({frame.tracks.t_ns, frame.tracks.points, {}});
+    for (const ImuSample& sample : frame.step.imu)
+      if (imu.empty() || sample.t_ns > imu.back().t_ns) imu.push_back(sample);
+    const auto longest_ns = static_cast<std::int64_t>(1e9 * kLongest_s);
+    const std::int64_t from_ns = tracks.back().t_ns - longest_ns;
+    const auto before = [from_ns](const auto& item) { return item.t_ns < from_ns; };
+    tracks.erase(tracks.begin(), std::find_if_not(tracks.begin(), tracks.end(), before));
+    imu.erase(imu.begin(), std::find_if_not(imu.begin(), imu.end(), before));
+  }
+};
 
 }  // namespace
 
 ClockSearch searchClock(TrackingStage& tracking, const Rig& rig, const std::function<bool()>& cancelled) {
   ClockSearch search;
-  std::vector<FrameTracks> tracks;
-  ImuBatch imu;
-  double next_try_s = kFirstTry_s;
+  Newest newest;
+  double next_try_s = kFirstTry_s, turning_s = 0;
+  std::size_t held_bytes = 0;
   while (!(cancelled && cancelled())) {
     auto frame = tracking.next();
     if (!frame) break;
-    tracks.push_back({frame->tracks.t_ns, frame->tracks.points, {}});
-    for (const ImuSample& sample : frame->step.imu)
-      if (imu.empty() || sample.t_ns > imu.back().t_ns) imu.push_back(sample);
+    newest.add(*frame);
+    turning_s += turningSeconds(frame->turn);
+    held_bytes += bytesOf(frame->step.frame);
     search.frames.push_back(std::move(*frame));
-    const double t_s = 1e-9 * static_cast<double>(tracks.back().t_ns - tracks.front().t_ns);
+    const double t_s = 1e-9 * static_cast<double>(newest.tracks.back().t_ns - search.frames.front().tracks.t_ns);
     if (t_s < next_try_s) continue;
-    next_try_s = std::min(kLongest_s, kTryGrowth * next_try_s);
-    const ClockOffset clock = findClockOffset(tracks, imu, rig);
+    next_try_s = t_s < kLongest_s ? std::min(kLongest_s, kTryGrowth * next_try_s) : next_try_s + kTriesApart_s;
+    const ClockOffset clock = findClockOffset(newest.tracks, newest.imu, rig);
     if (clock.determined && (!search.clock.determined || clock.sigma_s < search.clock.sigma_s)) search.clock = clock;
-    if (t_s >= kLongest_s || (search.clock.determined && search.clock.sigma_s < kGoodSigma_s)) break;
+    if (search.clock.determined && (t_s >= kLongest_s || search.clock.sigma_s < kGoodSigma_s)) break;
+    if (t_s >= kLongest_s && (turning_s >= kLongest_s || held_bytes > kMostHeld_bytes)) break;
   }
   const ClockOffset& clock = search.clock;
   if (clock.determined && std::abs(clock.offset_s) > kLeftToEstimator_s + kSignificant * clock.sigma_s)

@@ -17,9 +17,10 @@ struct ClockSearch {
   double offset_s = 0;  ///< to correct the stamps by; 0 where the images' stamps are good to some milliseconds
 };
 
-/// Looks at the tracks of the first seconds until the offset is determined, at most five seconds. Offsets that the
-/// estimator finds by itself, from its first frames on, are left to it. `cancelled` is asked before every frame and may
-/// be empty.
+/// Looks at the tracks until the offset is determined, at most for five seconds in which the camera turns: before,
+/// while it lies still, nothing shows the offset. It ends, too, when the images of more than five seconds take half a
+/// gigabyte. Offsets that the estimator finds by itself, from its first frames on, are left to it. `cancelled` is asked
+/// before every frame and may be empty.
 ClockSearch searchClock(TrackingStage& tracking, const Rig& rig, const std::function<bool()>& cancelled = {});
 
 }  // namespace lintel

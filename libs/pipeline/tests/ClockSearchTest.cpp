@@ -28,13 +28,15 @@ Rig turnedRig() {
 /// A camera that turns among far blobs; an image with stamp t shows the world at t + offset of the IMU's clock.
 class TurningRecording : public test::MadeRecording {
  public:
-  explicit TurningRecording(double offset_s, double rate = 1, int frames = 100, std::string complaint = "")
-      : MadeRecording(turnedRig(), frames, std::move(complaint)), offset_s_(offset_s), rate_(rate) {}
+  explicit TurningRecording(double offset_s, double rate = 1, int frames = 100, std::string complaint = "",
+                            double still_s = 0)
+      : MadeRecording(turnedRig(), frames, std::move(complaint)), offset_s_(offset_s), rate_(rate), still_s_(still_s) {}
 
  private:
   Eigen::Quaterniond R_w_b(double t_s) const {
+    const double t = std::max(0.0, t_s - still_s_);
     return expRotation(
-        rate_ * Eigen::Vector3d(0.12 * std::sin(3.1 * t_s), 0.1 * std::sin(4.3 * t_s + 1), 0.15 * std::sin(2.3 * t_s)));
+        rate_ * Eigen::Vector3d(0.12 * std::sin(3.1 * t), 0.1 * std::sin(4.3 * t + 1), 0.15 * std::sin(2.3 * t)));
   }
   Eigen::Vector3d gyroAt(double t_s) const override {
     constexpr double kHalf_s = 1e-3;
@@ -52,7 +54,7 @@ class TurningRecording : public test::MadeRecording {
     return image;
   }
 
-  double offset_s_, rate_;
+  double offset_s_, rate_, still_s_;
 };
 
 FrontEndParams points() {
@@ -81,13 +83,23 @@ TEST(ClockSearch, LeavesGoodStampsAlone) {
   EXPECT_LT(search.frames.size(), 60u) << "it ends when it knows";
 }
 
-TEST(ClockSearch, GivesUpAfterFiveSecondsWithoutTurns) {
-  TurningRecording recording(0.05, 0, 200);
+/// A recording usually begins with a camera that lies still, which shows nothing.
+TEST(ClockSearch, WaitsForTheFirstTurn) {
+  TurningRecording recording(0.05, 1, 260, "", 8);
+  OdometryResult result;
+  TrackingStage tracking(recording, points(), result);
+  const ClockSearch search = searchClock(tracking, recording.rig());
+  EXPECT_NEAR(search.offset_s, 0.05, 0.004);
+}
+
+TEST(ClockSearch, WithoutTurnsItTakesAllThereIsAndSaysNothing) {
+  TurningRecording recording(0.05, 0, 140);
   OdometryResult result;
   TrackingStage tracking(recording, points(), result);
   const ClockSearch search = searchClock(tracking, recording.rig());
   EXPECT_EQ(search.offset_s, 0);
-  EXPECT_EQ(search.frames.size(), 101u);
+  EXPECT_FALSE(search.clock.determined);
+  EXPECT_EQ(search.frames.size(), 140u);
 }
 
 /// Tracking goes on as if there had been no search.
