@@ -170,7 +170,7 @@ WindowUpdate Estimator::Impl::skipFrame(const FrameTracks& tracks) {
 void Estimator::Impl::remember(const FrameTracks& tracks) {
   if (tracking_ && !onTrial()) return memory_.clear();
   memory_.push_back({tracks, pending_imu_});
-  if (static_cast<int>(memory_.size()) > params_.initializer.max_frames) memory_.pop_front();
+  if (static_cast<int>(memory_.size()) > std::min(kTrialFrames, params_.initializer.max_frames)) memory_.pop_front();
 }
 
 void Estimator::Impl::addFrame(const FrameTracks& tracks) {

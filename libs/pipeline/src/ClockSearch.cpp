@@ -12,6 +12,7 @@ namespace {
 
 constexpr double kLongest_s = 5;  // of turning; and the tracks that are compared at a time
 constexpr double kFirstTry_s = 1.5, kTryGrowth = 1.5, kTriesApart_s = 2.5;
+constexpr double kImuBefore_s = 2 * kLargestClockOffset_s;
 constexpr double kGoodSigma_s = 0.002;
 constexpr double kLeftToEstimator_s = 0.005;  // its model is linear in the offset
 constexpr double kSignificant = 4;            // standard deviations
@@ -26,7 +27,13 @@ double turningSeconds(const CameraTurn& turn) {
   return turn.known() && turn.rotation.norm() > kLeastTurn_rad_s * dt_s ? dt_s : 0;
 }
 
-/// The tracks and IMU samples of the last kLongest_s.
+template <class Item>
+void eraseBefore(std::int64_t t_ns, std::vector<Item>& items) {
+  const auto earlier = [t_ns](const Item& item) { return item.t_ns < t_ns; };
+  items.erase(items.begin(), std::find_if_not(items.begin(), items.end(), earlier));
+}
+
+/// The tracks of the last kLongest_s, and the IMU samples around them.
 struct Newest {
   std::vector<FrameTracks> tracks;
   ImuBatch imu;
@@ -35,11 +42,8 @@ struct Newest {
     tracks.push_back({frame.tracks.t_ns, frame.tracks.points, {}});
     for (const ImuSample& sample : frame.step.imu)
       if (imu.empty() || sample.t_ns > imu.back().t_ns) imu.push_back(sample);
-    const auto longest_ns = static_cast<std::int64_t>(1e9 * kLongest_s);
-    const std::int64_t from_ns = tracks.back().t_ns - longest_ns;
-    const auto before = [from_ns](const auto& item) { return item.t_ns < from_ns; };
-    tracks.erase(tracks.begin(), std::find_if_not(tracks.begin(), tracks.end(), before));
-    imu.erase(imu.begin(), std::find_if_not(imu.begin(), imu.end(), before));
+    eraseBefore(tracks.back().t_ns - static_cast<std::int64_t>(1e9 * kLongest_s), tracks);
+    eraseBefore(tracks.front().t_ns - static_cast<std::int64_t>(1e9 * kImuBefore_s), imu);
   }
 };
 

@@ -26,10 +26,18 @@ namespace lintel {
 namespace {
 
 constexpr double kKnownOffset_s = 0.002;
+// Of k1 and k2, which move points at the image's corners by as many pixels as the focal length has hundreds.
+constexpr double kKnownDistortion = 0.02;
+// A start with k1 and k2 free is taken when it leaves less than this share of the squared residuals.
+constexpr double kClearlyBetter = 0.6;
 // An adjustment is left when the scale is less certain than asked for by this factor, before it and after its first
 // round: what is left of it changes the scale's sigma by less.
 constexpr double kHopelessBefore = 3, kHopelessAfterFirst = 2;
 constexpr char kScaleUnknown[] = "waiting for a motion that shows the scale";
+// A start whose median error is less than this share of the points' sigma is in the deepest minimum: in others errors
+// are those of a wrong geometry.
+constexpr double kUnambiguous = 0.5;
+constexpr double kOtherScales[] = {0.5, 0.7, 1.4, 2};
 
 /// Parallax from the oldest frame that shares enough points with the newest: where tracks are short none is shared with
 /// the first.
@@ -47,6 +55,8 @@ EstimatorParams Initializer::paramsAtStart(EstimatorParams params) {
   params.factors.point_sigma_px = params.factors.point_noise_px = params.initializer.point_sigma_px;
   params.factors.point_walk_px = 0;
   params.factors.track_freedom = std::numeric_limits<double>::infinity();
+  params.factors.point_loss_width = params.initializer.point_loss_width;
+  params.landmarks.point_min_observations = params.initializer.point_min_observations;
   return params;
 }
 
@@ -152,7 +162,46 @@ std::string Initializer::tryMoving(const Eigen::Vector3d& bias_gyro, SlidingWind
     trial.frames[k].motion.segment<3>(kVelocityAt) = R_w_b0 * gravity.v_b0_bk[k];
   }
   levelAndCentre(trial);
-  return adjust(trial) ? verify(trial) : kScaleUnknown;
+  // Waiting does not help when the buffer is full: the start is judged when it has been adjusted.
+  const bool full = static_cast<int>(trial.frames.size()) >= params_.initializer.max_frames;
+  if (!adjustWithLens(full ? Gates::kNone : Gates::kHopeless, trial)) return kScaleUnknown;
+  if (medianErrorPx(trial) > kUnambiguous * params_.factors.point_sigma_px) tryOtherScales(trial);
+  return verify(trial);
+}
+
+/// Where images are poor, the adjustment from the closed form may end in a minimum beside the deepest one.
+void Initializer::tryOtherScales(SlidingWindow& best) const {
+  const SlidingWindow adjusted = best;
+  double least = misfitOf(best);
+  for (const double factor : kOtherScales) {
+    SlidingWindow trial = adjusted;
+    for (auto& [id, track] : trial.points) track.triangulated = false;
+    for (WindowFrame& frame : trial.frames) {
+      const Pose T_w_b = frame.T_w_b();
+      frame.pose = toBlock(Pose{T_w_b.q, factor * T_w_b.p});
+      frame.motion.segment<3>(kVelocityAt) *= factor;
+    }
+    if (!adjustWithLens(Gates::kNone, trial)) continue;
+    if (const double misfit = misfitOf(trial); misfit < least) {
+      least = misfit;
+      best = std::move(trial);
+    }
+  }
+}
+
+bool Initializer::adjustWithLens(Gates gates, SlidingWindow& trial) const {
+  CalibrationParams held = params_.calibration;
+  held.refine_camera = false;
+  if (!distortionUnknown()) return adjust(held, gates, trial);
+  SlidingWindow bent = trial;
+  if (!adjust(held, gates, trial)) return false;
+  if (adjust(params_.calibration, gates, bent) && misfitOf(bent) < kClearlyBetter * misfitOf(trial))
+    trial = std::move(bent);
+  return true;
+}
+
+bool Initializer::distortionUnknown() const {
+  return params_.calibration.refine_camera && params_.calibration.distortion_sigma > kKnownDistortion;
 }
 
 double Initializer::misfitOf(SlidingWindow& window) const {
@@ -177,11 +226,12 @@ double Initializer::misfitOf(SlidingWindow& window) const {
   return sum;
 }
 
-bool Initializer::adjust(SlidingWindow& window) const {
+bool Initializer::adjust(const CalibrationParams& calibration, Gates gates, SlidingWindow& window) const {
   setBiasPrior(window, MotionBlock::Zero(), params_.initializer.bias_gyro_sigma,
                std::numeric_limits<double>::infinity());
-  CalibrationParams frozen = params_.calibration;
-  frozen.refine_extrinsics = frozen.refine_camera = frozen.refine_readout = false;
+  const bool gated = gates == Gates::kHopeless;
+  CalibrationParams frozen = calibration;
+  frozen.refine_extrinsics = frozen.refine_readout = false;
   // an offset that is known from a search alone, to some milliseconds, would be taken for a bias
   frozen.refine_time_offset &= frozen.time_offset_sigma_s > kKnownOffset_s;
   LandmarkParams loose = params_.landmarks;
@@ -190,35 +240,49 @@ bool Initializer::adjust(SlidingWindow& window) const {
   for (int round = 0; round < 3; ++round) {
     loose.point_max_error_px = round == 0 ? 30 * scale : round == 1 ? 8 * scale : params_.landmarks.point_max_error_px;
     triangulatePoints(window, loose, params_.factors.point_sigma_px);
-    if (round == 0 && !scaleWithin(kHopelessBefore, window)) return false;
+    if (gated && round == 0 && !scaleWithin(kHopelessBefore, window)) return false;
     WindowFactors factors(window, params_.factors);
     factors.addPriors();
     factors.addImu();
     factors.addPoints();
     factors.addGauge();
-    if (frozen.refine_time_offset) factors.addCalibrationPriors(frozen, T_b_c_calibrated_);
+    if (frozen.refine_time_offset || frozen.refine_camera) factors.addCalibrationPriors(frozen, T_b_c_calibrated_);
     solveWindow(window, factors.factors(), frozen, {20});
+    window.relinearise();
     loose.point_max_error_px = round == 0 ? 8 * scale : params_.landmarks.point_max_error_px;
     const CameraPoses poses(window);
     for (auto& [id, track] : window.points)
       if (track.triangulated && reprojectionError(poses, track) > loose.point_max_error_px) track.triangulated = false;
     for (WindowFrame& frame : window.frames)
       if (frame.imu) frame.imu->repropagate(biasOf(frame.motion.data()));
-    if (round == 0 && !scaleWithin(kHopelessAfterFirst, window)) return false;
+    if (gated && round == 0 && !scaleWithin(kHopelessAfterFirst, window)) return false;
   }
   return true;
 }
 
-std::string Initializer::verify(SlidingWindow& window) const {
-  const InitializerParams& p = params_.initializer;
+/// Of the points with a place; `candidates` are all that could have one.
+std::vector<double> Initializer::errorsPx(const SlidingWindow& window, int& candidates) const {
   const CameraPoses poses(window);
   std::vector<double> errors;
-  int candidates = 0;
+  candidates = 0;
   for (const auto& [id, track] : window.points) {
     if (static_cast<int>(track.sightings.size()) < params_.landmarks.point_min_observations) continue;
     ++candidates;
     if (track.triangulated) errors.push_back(reprojectionError(poses, track));
   }
+  return errors;
+}
+
+double Initializer::medianErrorPx(const SlidingWindow& window) const {
+  int candidates = 0;
+  std::vector<double> errors = errorsPx(window, candidates);
+  return errors.empty() ? std::numeric_limits<double>::infinity() : upperMedian(errors);
+}
+
+std::string Initializer::verify(SlidingWindow& window) const {
+  const InitializerParams& p = params_.initializer;
+  int candidates = 0;
+  std::vector<double> errors = errorsPx(window, candidates);
   if (errors.size() < 20 || static_cast<double>(errors.size()) < 0.6 * candidates)
     return "too few points agree with the motion";
   if (upperMedian(errors) > p.max_error_px) return "the images do not agree with the motion";

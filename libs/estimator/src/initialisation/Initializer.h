@@ -2,6 +2,7 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include "lintel/estimator/EstimatorParams.h"
 #include "lintel/estimator/SlidingWindow.h"
@@ -30,8 +31,15 @@ class Initializer {
   std::string startMoving(SlidingWindow& window) const;
   std::string tryMoving(const Eigen::Vector3d& bias_gyro, SlidingWindow& trial) const;
   double misfitOf(SlidingWindow& window) const;  ///< squared residuals, in sigmas, of points, IMU and priors
-  /// False when the scale turns out to be far from known; the adjustment is not finished then.
-  bool adjust(SlidingWindow& window) const;
+  /// Whether an adjustment is left as soon as the scale turns out to be far from known.
+  enum class Gates { kNone, kHopeless };
+  bool adjust(const CalibrationParams& calibration, Gates gates, SlidingWindow& window) const;
+  /// With k1 and k2 free as well, where they are not given and that fits clearly better.
+  bool adjustWithLens(Gates gates, SlidingWindow& trial) const;
+  void tryOtherScales(SlidingWindow& best) const;
+  std::vector<double> errorsPx(const SlidingWindow& window, int& candidates) const;
+  double medianErrorPx(const SlidingWindow& window) const;
+  bool distortionUnknown() const;
   bool scaleWithin(double times, SlidingWindow& window) const;  ///< times the sigma that is asked for
   std::string verify(SlidingWindow& window) const;
   double relativeScaleSigma(SlidingWindow& window) const;

@@ -7,6 +7,7 @@
 #include <set>
 
 #include "TestWindow.h"
+#include "lintel/estimator/StatePriors.h"
 #include "lintel/geometry/Rotation.h"
 
 namespace lintel {
@@ -104,6 +105,22 @@ TEST_F(InitializerTest, AcceptedStartsAreGoodWhereverTheyAreTried) {
     EXPECT_LT(tiltError(window.frames.back(), f.truth(first + 38)), 0.05) << "from frame " << first;
   }
   EXPECT_GE(accepted, 3);
+}
+
+/// Zeros in a calibration mean that nobody measured the distortion.
+TEST_F(InitializerTest, ADistortionThatIsNotGivenIsLearned) {
+  TrackedFlight f = noisyFlight(0.3, ImuSimulatorParams{});
+  const double k1 = f.rig.camera.lens[0];
+  ASSERT_LT(k1, -0.2);
+  SlidingWindow known = bufferOf(f, 0, 20);
+  ASSERT_EQ(initializer_.initialise(known), "");
+  EXPECT_EQ(known.correction[4], 0);
+  f.rig.camera.lens = {};
+  const Initializer unaware(paramsFor(f.rig.camera, params_), f.rig.T_b_c);
+  SlidingWindow window = bufferOf(f, 0, 20);
+  ASSERT_EQ(unaware.initialise(window), "");
+  EXPECT_NEAR(window.correction[4], k1, 0.02);
+  EXPECT_LT(relativeMotionError(window, f, 0, 38), 0.10);
 }
 
 TEST_F(InitializerTest, StartsAtRest) {
