@@ -12,6 +12,7 @@ namespace {
 
 constexpr double kLongest_s = 5;  // of turning; and the tracks that are compared at a time
 constexpr double kFirstTry_s = 1.5, kTryGrowth = 1.5, kTriesApart_s = 2.5;
+constexpr double kNewTurning_s = 0.3;  // since the last try, for another one
 constexpr double kImuBefore_s = 2 * kLargestClockOffset_s;
 constexpr double kGoodSigma_s = 0.002;
 constexpr double kLeftToEstimator_s = 0.005;  // its model is linear in the offset
@@ -52,7 +53,7 @@ struct Newest {
 ClockSearch searchClock(TrackingStage& tracking, const Rig& rig, const std::function<bool()>& cancelled) {
   ClockSearch search;
   Newest newest;
-  double next_try_s = kFirstTry_s, turning_s = 0;
+  double next_try_s = kFirstTry_s, turning_s = 0, compared_s = 0;  // of turning, when tracks were compared last
   std::size_t held_bytes = 0;
   while (!(cancelled && cancelled())) {
     auto frame = tracking.next();
@@ -64,8 +65,11 @@ ClockSearch searchClock(TrackingStage& tracking, const Rig& rig, const std::func
     const double t_s = 1e-9 * static_cast<double>(newest.tracks.back().t_ns - search.frames.front().tracks.t_ns);
     if (t_s < next_try_s) continue;
     next_try_s = t_s < kLongest_s ? std::min(kLongest_s, kTryGrowth * next_try_s) : next_try_s + kTriesApart_s;
-    const ClockOffset clock = findClockOffset(newest.tracks, newest.imu, rig);
-    if (clock.determined && (!search.clock.determined || clock.sigma_s < search.clock.sigma_s)) search.clock = clock;
+    if (t_s < kLongest_s || turning_s > compared_s + kNewTurning_s) {
+      compared_s = turning_s;
+      const ClockOffset clock = findClockOffset(newest.tracks, newest.imu, rig);
+      if (clock.determined && (!search.clock.determined || clock.sigma_s < search.clock.sigma_s)) search.clock = clock;
+    }
     if (search.clock.determined && (t_s >= kLongest_s || search.clock.sigma_s < kGoodSigma_s)) break;
     if (t_s >= kLongest_s && (turning_s >= kLongest_s || held_bytes > kMostHeld_bytes)) break;
   }
