@@ -56,7 +56,6 @@ EstimatorParams Initializer::paramsAtStart(EstimatorParams params) {
   params.factors.point_walk_px = 0;
   params.factors.track_freedom = std::numeric_limits<double>::infinity();
   params.factors.point_loss_width = params.initializer.point_loss_width;
-  params.landmarks.point_min_observations = params.initializer.point_min_observations;
   return params;
 }
 

@@ -130,8 +130,7 @@ struct InitializerParams {
   int min_frames = 10;               ///< window frames (estimator rate) before the first attempt
   int max_frames = 45;               ///< older ones are dropped; four seconds of a slow motion show scale and biases
   double point_sigma_px = 0.7;       ///< of a tracked point, with the errors of the calibration, which is held [px]
-  double point_loss_width = 0.7;     ///< Cauchy width in a start, in standard deviations
-  int point_min_observations = 4;    ///< window frames that a start's points are seen in
+  double point_loss_width = 1;       ///< Cauchy width in a start, in standard deviations
   double min_parallax_px = 12;       ///< rotation-compensated, median, over the buffer; below: static or waiting
   double max_error_px = 2.0;         ///< median reprojection error of an accepted start
   double max_scale_sigma = 0.04;     ///< relative standard deviation of the scale of an accepted start
@@ -148,7 +147,6 @@ struct InitializerParams {
     field("max_frames", max_frames, Range{4, 1000});
     field("point_sigma_px", point_sigma_px, Range{0.01, 100});
     field("point_loss_width", point_loss_width, Range{0.1, 1000000});
-    field("point_min_observations", point_min_observations, Range{2, 1000});
     field("min_parallax_px", min_parallax_px, ReferencePixels{0.1, 1000});
     field("max_error_px", max_error_px, Range{0.1, 1000});
     field("max_scale_sigma", max_scale_sigma, Range{0.0001, 100});
