@@ -40,6 +40,7 @@ constexpr double kMostScaleSigma = 0.02;  // no prior takes points in before: it
 /// Window frames that come in before a start is tried again in place of a wrong one: they show more than it was made
 /// of.
 constexpr int kFramesBeforeRetrial = 5;
+constexpr int kFramesBetweenTries = 4;  // with a full buffer, of which little is new then
 
 /// When a solve may end, see SolveLimits::min_move. After it mostly landmarks move, one by one: waiting for them took a
 /// quarter of the solver's time and made the trajectory a few per cent better on average.
@@ -116,8 +117,9 @@ class Estimator::Impl {
     FrameTracks tracks;
     ImuBatch imu;  // since the window frame before
   };
-  std::deque<Input> memory_;                      // of the last frames, for a start that replaces a wrong one
-  int frames_to_wait_ = 0;                        // before it is tried
+  std::deque<Input> memory_;  // of the last frames, for a start that replaces a wrong one
+  int frames_to_wait_ = 0;    // before it is tried
+  std::string waits_for_;
   std::int64_t first_pose_ns_ = 0;                // of the present start
   std::optional<std::int64_t> replaces_from_ns_;  // first pose of the wrong start that is to be replaced
 };
@@ -204,13 +206,18 @@ void Estimator::Impl::initialise(WindowUpdate& update) {
   }
   if (frames_to_wait_ > 0) {
     --frames_to_wait_;
-    update.reason = "the start before was wrong";
+    update.reason = waits_for_;
     return;
   }
   SlidingWindow buffer = window_;
   buffer.frames.front().imu.reset();
   update.reason = initializer_.initialise(buffer);
-  if (!update.reason.empty()) return;
+  if (!update.reason.empty()) {
+    if (static_cast<int>(buffer.frames.size()) < params_.initializer.max_frames) return;
+    frames_to_wait_ = kFramesBetweenTries;
+    waits_for_ = update.reason;
+    return;
+  }
   window_ = std::move(buffer);
   moveToAnchor();
   tracking_ = true;
@@ -358,6 +365,7 @@ void Estimator::Impl::fail(Failure failure, const std::string& reason, WindowUpd
   if (start_was_wrong) {
     replaces_from_ns_ = first_pose_ns_;
     frames_to_wait_ = kFramesBeforeRetrial;
+    waits_for_ = "the start before was wrong";
     fillFromMemory();
   } else {
     memory_.clear();

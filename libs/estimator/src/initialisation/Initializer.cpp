@@ -37,6 +37,7 @@ constexpr char kScaleUnknown[] = "waiting for a motion that shows the scale";
 // A start whose median error is less than this share of the points' sigma is in the deepest minimum: in others errors
 // are those of a wrong geometry.
 constexpr double kUnambiguous = 0.5;
+constexpr double kSomeAgree = 0.3;  // of the points: with fewer it is not the scale that is wrong
 constexpr double kOtherScales[] = {0.5, 0.7, 1.4, 2};
 
 /// Parallax from the oldest frame that shares enough points with the newest: where tracks are short none is shared with
@@ -164,7 +165,10 @@ std::string Initializer::tryMoving(const Eigen::Vector3d& bias_gyro, SlidingWind
   // Waiting does not help when the buffer is full: the start is judged when it has been adjusted.
   const bool full = static_cast<int>(trial.frames.size()) >= params_.initializer.max_frames;
   if (!adjustWithLens(full ? Gates::kNone : Gates::kHopeless, trial)) return kScaleUnknown;
-  if (medianErrorPx(trial) > kUnambiguous * params_.factors.point_sigma_px) tryOtherScales(trial);
+  int candidates = 0;
+  std::vector<double> errors = errorsPx(trial, candidates);
+  const bool some_agree = static_cast<double>(errors.size()) > kSomeAgree * candidates;
+  if (some_agree && upperMedian(errors) > kUnambiguous * params_.factors.point_sigma_px) tryOtherScales(trial);
   return verify(trial);
 }
 
@@ -270,12 +274,6 @@ std::vector<double> Initializer::errorsPx(const SlidingWindow& window, int& cand
     if (track.triangulated) errors.push_back(reprojectionError(poses, track));
   }
   return errors;
-}
-
-double Initializer::medianErrorPx(const SlidingWindow& window) const {
-  int candidates = 0;
-  std::vector<double> errors = errorsPx(window, candidates);
-  return errors.empty() ? std::numeric_limits<double>::infinity() : upperMedian(errors);
 }
 
 std::string Initializer::verify(SlidingWindow& window) const {

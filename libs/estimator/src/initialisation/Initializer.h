@@ -38,7 +38,6 @@ class Initializer {
   bool adjustWithLens(Gates gates, SlidingWindow& trial) const;
   void tryOtherScales(SlidingWindow& best) const;
   std::vector<double> errorsPx(const SlidingWindow& window, int& candidates) const;
-  double medianErrorPx(const SlidingWindow& window) const;
   bool distortionUnknown() const;
   bool scaleWithin(double times, SlidingWindow& window) const;  ///< times the sigma that is asked for
   std::string verify(SlidingWindow& window) const;
