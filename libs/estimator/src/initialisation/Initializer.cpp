@@ -51,7 +51,8 @@ double longestParallaxPx(const SlidingWindow& window) {
 
 }  // namespace
 
-/// The calibration is held: its errors are in the images' residuals, and common to all tracks.
+/// The calibration is held, but for a distortion that is not known: its errors are in the images' residuals, and common
+/// to all tracks.
 EstimatorParams Initializer::paramsAtStart(EstimatorParams params) {
   params.factors.point_sigma_px = params.factors.point_noise_px = params.initializer.point_sigma_px;
   params.factors.point_walk_px = 0;
