@@ -29,6 +29,7 @@
 #include "window/WindowNoise.h"
 #include "window/WindowRetirement.h"
 #include "window/WindowSigma.h"
+#include "window/WindowStamps.h"
 
 namespace lintel {
 
@@ -46,10 +47,6 @@ constexpr int kFramesBetweenTries = 4;  // with a full buffer, of which little i
 /// quarter of the solver's time and made the trajectory a few per cent better on average.
 constexpr double kSettledMove = 0.3;
 
-InertialState stateOf(const WindowFrame& frame) {
-  return {frame.T_w_b(), velocityOf(frame.motion.data()), biasOf(frame.motion.data())};
-}
-
 }  // namespace
 
 class Estimator::Impl {
@@ -65,8 +62,8 @@ class Estimator::Impl {
   WindowUpdate process(const FrameTracks& tracks, const ImuBatch& imu);
   WindowUpdate finish();
   CalibrationEstimate calibration() const {
-    CalibrationEstimate estimate{
-        window_.correctedCamera(), window_.T_b_c(), window_.correction[kTimeOffsetAt], window_.readout_s(), {}};
+    CalibrationEstimate estimate{window_.correctedCamera(), window_.T_b_c(), window_.correction[kTimeOffsetAt],
+                                 window_.readout_s(),       stampJitter_s(), {}};
     if (tracking_) estimate.sigma = windowSigma(window_, params_, rig_.T_b_c).calibration;
     return estimate;
   }
@@ -80,6 +77,7 @@ class Estimator::Impl {
   void replaceWrongStart(WindowUpdate& update);
   void track(WindowUpdate& update);
   void solve(WindowUpdate& update);
+  double stampJitter_s() const { return params_.calibration.find_stamp_jitter ? stamp_jitter_.sigma_s() : 0; }
   void shrink(bool second_newest_is_keyframe, WindowUpdate& update);
   void dropOldest(WindowUpdate& update);
   void dropSecondNewest(WindowUpdate& update);
@@ -102,6 +100,7 @@ class Estimator::Impl {
   SlidingWindow window_;
   PlacementCheck placement_;
   ScaleDrift scale_drift_;
+  StampJitter stamp_jitter_;
   std::optional<WindowCovariance> sigma_;                        // of the last solve
   StateCovariance newest_covariance_ = StateCovariance::Zero();  // of the newest window frame
   bool tracking_ = false;
@@ -210,6 +209,7 @@ void Estimator::Impl::initialise(WindowUpdate& update) {
     return;
   }
   SlidingWindow buffer = window_;
+  buffer.stamp_sigma_s = stampJitter_s();
   buffer.frames.front().imu.reset();
   update.reason = initializer_.initialise(buffer);
   if (!update.reason.empty()) {
@@ -224,6 +224,8 @@ void Estimator::Impl::initialise(WindowUpdate& update) {
   blind_frames_ = tracks_since_start_ = 0;
   unroll(window_);
   solve(update);
+  addIntervals(window_, 1, stamp_jitter_);
+  if (stampJitter_s() > 0) solve(update);
   scale_drift_.start(sigma_->relativeScaleSigma(window_));
   update.status = EstimatorStatus::kTracking;
   first_pose_ns_ = update.t_ns;
@@ -273,6 +275,7 @@ void Estimator::Impl::track(WindowUpdate& update) {
   newest.still = rest_.imagesRest();
   const bool keyframe = secondNewestIsKeyframe(window_, params_);
   solve(update);
+  addIntervals(window_, window_.frames.size() - 1, stamp_jitter_);
   newest.blind = pointsInNewest(window_) + linesInNewest(window_) < params_.failure.min_points && !newest.at_rest;
   blind_frames_ = newest.blind ? blind_frames_ + 1 : 0;
   ++tracks_since_start_;
@@ -300,6 +303,8 @@ void Estimator::Impl::solve(WindowUpdate& update) {
   triangulatePoints(window_, params_.landmarks, params_.factors.point_sigma_px);
   triangulateLines(window_, params_);
   if (params_.degeneracy.lines == "constrain") groupParallelLines(window_, params_);
+  window_.stamp_sigma_s = stampJitter_s();
+  countStampJitter(window_.stamp_sigma_s, window_);
   WindowFactors factors(window_, params_.factors);
   factors.addAll(params_, rig_.T_b_c);
   const SolveLimits limits{params_.max_iterations, kSettledMove, true};

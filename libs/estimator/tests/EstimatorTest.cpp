@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <random>
 #include <set>
 
 #include "TestWindow.h"
@@ -159,6 +160,56 @@ TEST(Estimator, FindsTheCalibrationFromARoughOne) {
   EXPECT_NEAR(found.camera.meanFocal(), flight.rig.camera.meanFocal(), 2);
   EXPECT_NEAR(found.camera.lens[0], flight.rig.camera.lens[0], 0.01);
   EXPECT_LT(found.T_b_c.q.angularDistance(flight.rig.T_b_c.q), 0.005);
+}
+
+/// The flight with stamps of the images that are off by `sigma_s` each; the samples are those between the stamps.
+TrackedFlight withJitter(TrackedFlight flight, double sigma_s, unsigned seed) {
+  ImuBatch all;
+  for (const SimulatedFrame& frame : flight.sim.frames)
+    for (const ImuSample& sample : frame.imu)
+      if (all.empty() || sample.t_ns > all.back().t_ns) all.push_back(sample);
+  const auto at = [&](std::int64_t t_ns) {
+    const auto after = std::lower_bound(all.begin() + 1, all.end() - 1, t_ns,
+                                        [](const ImuSample& s, std::int64_t t) { return s.t_ns < t; });
+    const ImuSample &a = after[-1], &b = *after;
+    const double share = static_cast<double>(t_ns - a.t_ns) / static_cast<double>(b.t_ns - a.t_ns);
+    return ImuSample{t_ns, a.gyro + share * (b.gyro - a.gyro), a.accel + share * (b.accel - a.accel)};
+  };
+  std::mt19937 random(seed);
+  std::normal_distribution<double> normal(0, sigma_s);
+  std::int64_t before_ns = all.front().t_ns;
+  for (SimulatedFrame& frame : flight.sim.frames) {
+    const std::int64_t t_ns = frame.tracks.t_ns += std::llround(1e9 * std::clamp(normal(random), -0.02, 0.02));
+    frame.imu = {at(before_ns)};
+    for (const ImuSample& sample : all)
+      if (sample.t_ns > before_ns && sample.t_ns < t_ns) frame.imu.push_back(sample);
+    frame.imu.push_back(at(t_ns));
+    before_ns = t_ns;
+  }
+  return flight;
+}
+
+TEST(Estimator, StampsThatAreOffEachByItsOwnAmountAreFoundAndCounted) {
+  const double sigma_s = 0.002;
+  const TrackedFlight exact = fly(ImuSimulatorParams{}, tracksFor(10, 0.3));
+  EstimatorParams ignoring;
+  ignoring.calibration.find_stamp_jitter = false;
+  for (const unsigned seed : {1u, 2u}) {
+    const TrackedFlight flight = withJitter(exact, sigma_s, seed);
+    Estimator estimator(flight.rig, {});
+    std::vector<WindowUpdate> updates;
+    for (const SimulatedFrame& frame : flight.sim.frames) updates.push_back(estimator.process(frame.tracks, frame.imu));
+    EXPECT_GT(posesOf(updates), 160);
+    EXPECT_NEAR(estimator.calibration().stamp_jitter_s, sigma_s, 0.5 * sigma_s);
+    EXPECT_LT(positionError(updates, flight), 0.7 * positionError(run(flight, ignoring), flight));
+  }
+}
+
+TEST(Estimator, StampsThatAreRightHaveNoJitter) {
+  const TrackedFlight flight = fly(ImuSimulatorParams{}, tracksFor(10, 0.5));
+  Estimator estimator(flight.rig, {});
+  for (const SimulatedFrame& frame : flight.sim.frames) estimator.process(frame.tracks, frame.imu);
+  EXPECT_EQ(estimator.calibration().stamp_jitter_s, 0);
 }
 
 TEST(Estimator, PointsThatLastInThePriorMakeItBetter) {

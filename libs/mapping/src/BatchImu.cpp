@@ -3,8 +3,22 @@
 #include <cmath>
 
 #include "BatchProblem.h"
+#include "lintel/inertial/StampJitter.h"
 
 namespace lintel {
+
+namespace {
+
+InertialState stateOf(const RetiredKeyframe& keyframe) { return {keyframe.T_w_b, keyframe.v_w_b, keyframe.bias}; }
+
+}  // namespace
+
+/// The jitter of the stamps at the ends of an interval, if there is some, as what the states are now says it.
+void BatchProblem::countStamps(std::size_t from, std::size_t to, Preintegration& imu) const {
+  const RetiredKeyframe &start = material_.keyframes[from], &end = material_.keyframes[to];
+  if (const double sigma_s = end.imu->stampSigma(); sigma_s > 0)
+    countStampJitter(sigma_s, stateOf(start), stateOf(end), imu);
+}
 
 void BatchProblem::addImu() {
   std::shared_ptr<Preintegration> whole;  // since the last anchor
@@ -13,6 +27,7 @@ void BatchProblem::addImu() {
     if (!keyframe.imu || keyframe.imu->dt_s() <= 0) continue;
     auto imu = std::make_shared<Preintegration>(*keyframe.imu);
     imu->repropagate(material_.keyframes[k - 1].bias);
+    countStamps(k - 1, k, *imu);
     imu_factors_.emplace_back(k, std::make_unique<ImuFactor>(imu));
     if (whole) {
       whole->append(*imu);
@@ -23,6 +38,7 @@ void BatchProblem::addImu() {
     std::size_t from = k - 1;
     while (!isAnchor(from)) --from;
     whole->repropagate(material_.keyframes[from].bias);
+    countStamps(from, k, *whole);
     anchor_imu_factors_.push_back(std::make_unique<ImuFactor>(whole));
     problem_->AddResidualBlock(anchor_imu_factors_.back().get(), nullptr, at(poseAt(from)), at(motionAt(from)),
                                at(poseAt(k)), at(motionAt(k)));

@@ -64,6 +64,7 @@ class BatchProblem {
   void placeBlocks();
   void addPriors();
   bool beginsWorld(FrameId keyframe) const;
+  void countStamps(std::size_t from, std::size_t to, Preintegration& imu) const;
   void addImu();
   std::size_t mostViewsOf(const PointRecord& point) const;
   void addPoints();

@@ -10,9 +10,9 @@
 #include <thread>
 #include <utility>
 
+#include "CalibrationRemarks.h"
 #include "ClockSearch.h"
 #include "EstimationStage.h"
-#include "ReadoutRemark.h"
 #include "RunCheck.h"
 #include "TrackingStage.h"
 #include "lintel/core/BoundedQueue.h"
@@ -146,6 +146,8 @@ OdometryResult runOdometry(Recording& recording, const Configuration& configurat
     result.remarks.push_back("noise of the IMU: " + noise);
   if (const std::string readout = readoutRemark(recording.rig(), result.window_calibration); !readout.empty())
     result.remarks.push_back(readout);
+  if (const std::string stamps = stampRemark(result.window_calibration); !stamps.empty())
+    result.remarks.push_back(stamps);
   result.evidence = check.evidence();
   result.verdict = check.verdict(result.statistics, result.rig);
   return result;

@@ -132,6 +132,7 @@ Json cameraJson(const Camera& c, const Pose& T_b_c, double time_offset_s, double
 /// The final calibration; beside it what was given, and what the last window made of it, with its sigmas.
 Json calibrationJson(const OdometryResult& result, const Rig& given) {
   Json json = cameraJson(result.rig.camera, result.rig.T_b_c, result.time_offset_s, result.rig.readout_s());
+  json["stamp_jitter_s"] = result.window_calibration.stamp_jitter_s;
   json["given"] = cameraJson(given.camera, given.T_b_c, 0, given.readout_s());
   const CalibrationEstimate& last = result.window_calibration;
   if (!last.sigma) return json;

@@ -20,6 +20,7 @@
 #include "window/ImuStatistics.h"
 #include "window/OutlierRejection.h"
 #include "window/WindowFactors.h"
+#include "window/WindowStamps.h"
 
 namespace lintel {
 
@@ -259,6 +260,7 @@ bool Initializer::adjust(const CalibrationParams& calibration, Gates gates, Slid
       if (track.triangulated && reprojectionError(poses, track) > loose.point_max_error_px) track.triangulated = false;
     for (WindowFrame& frame : window.frames)
       if (frame.imu) frame.imu->repropagate(biasOf(frame.motion.data()));
+    countStampJitter(window.stamp_sigma_s, window);
     if (gated && round == 0 && !scaleWithin(kHopelessAfterFirst, window)) return false;
   }
   return true;

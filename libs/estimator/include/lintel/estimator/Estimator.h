@@ -29,6 +29,7 @@ struct CalibrationEstimate {
   Pose T_b_c;
   double time_offset_s = 0;               ///< an image with stamp t shows the world at t + offset
   double readout_s = 0;                   ///< of a rolling shutter: from an image's first row to its last
+  double stamp_jitter_s = 0;              ///< standard deviation of the images' stamps; 0 where it does not matter
   std::optional<CalibrationSigma> sigma;  ///< of the last window; empty while there is none
 };
 

@@ -47,6 +47,7 @@ struct CalibrationParams {
   bool refine_camera = true;   ///< fx fy cx cy k1 k2
   bool refine_readout = true;  ///< of a rolling shutter
   bool refine_time_offset = true;
+  bool find_stamp_jitter = true;  ///< stamps that are off each by its own amount are counted as noise of the IMU
   double extrinsic_rotation_sigma_rad = 0.005;
   double extrinsic_translation_sigma_m = 0.005;
   double focal_sigma_px = 1.0;
@@ -62,6 +63,7 @@ struct CalibrationParams {
     field("refine_camera", refine_camera);
     field("refine_readout", refine_readout);
     field("refine_time_offset", refine_time_offset);
+    field("find_stamp_jitter", find_stamp_jitter);
     field("extrinsic_rotation_sigma_rad", extrinsic_rotation_sigma_rad, Range{1e-9, 1});
     field("extrinsic_translation_sigma_m", extrinsic_translation_sigma_m, Range{1e-9, 10});
     field("focal_sigma_px", focal_sigma_px, ReferencePixels{1e-9, 1000});

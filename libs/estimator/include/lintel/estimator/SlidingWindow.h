@@ -138,6 +138,7 @@ class SlidingWindow {
   std::deque<WindowFrame> frames;        ///< ascending time; the last is the newest
   std::map<TrackId, PointTrack> points;  ///< ordered: the same sums in the same order every run
   std::map<TrackId, LineTrack> lines;
+  double stamp_sigma_s = 0;  ///< by how much the images' stamps are off, as far as it is known (StampJitter.h)
   std::map<std::uint64_t, SharedDirection> directions;  ///< of groups of parallel lines; ids from 1
   std::uint64_t next_direction = 1;
   PoseBlock extrinsics;  ///< T_b_c

@@ -44,6 +44,13 @@ class Preintegration {
   /// Integrates all samples again with densities that are at least these.
   void raiseNoise(const ImuNoise& least);
 
+  /// What the covariance has more because the times of both ends are uncertain, by sigma_s each; replaces what was set
+  /// before, and stays when samples are appended (countStampJitter()).
+  void setStampNoise(double sigma_s, const Matrix9& covariance) {
+    stamp_sigma_s_ = sigma_s;
+    stamp_covariance_ = covariance;
+  }
+
   double dt_s() const { return dt_s_; }
   const ImuBias& bias() const { return bias_; }
   const ImuNoise& noise() const { return noise_; }
@@ -56,7 +63,8 @@ class Preintegration {
 
   /// d (theta, v, p) / d (bias_gyro, bias_accel).
   const Matrix96& biasJacobian() const { return bias_jacobian_; }
-  const Matrix9& covariance() const { return covariance_; }
+  Matrix9 covariance() const { return covariance_ + stamp_covariance_; }
+  double stampSigma() const { return stamp_sigma_s_; }  ///< [s]
 
   /// Deltas corrected to first order for biases other than bias() [Forster2017, eq. 44].
   struct Corrected {
@@ -78,7 +86,9 @@ class Preintegration {
   Eigen::Quaterniond delta_R_ = Eigen::Quaterniond::Identity();
   Eigen::Vector3d delta_v_ = Eigen::Vector3d::Zero(), delta_p_ = Eigen::Vector3d::Zero();
   Matrix96 bias_jacobian_ = Matrix96::Zero();
-  Matrix9 covariance_ = Matrix9::Zero();
+  Matrix9 covariance_ = Matrix9::Zero();  // by the samples
+  Matrix9 stamp_covariance_ = Matrix9::Zero();
+  double stamp_sigma_s_ = 0;
 };
 
 }  // namespace lintel

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "ReadoutRemark.h"
+#include "CalibrationRemarks.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -40,6 +40,13 @@ TEST(ReadoutRemark, IsSilentWhereNothingContradicts) {
   EXPECT_THAT(readoutRemark(rigWith(0), found(0.02, 0.005)), IsEmpty()) << "not observed";
   EXPECT_THAT(readoutRemark(rigWith(40e-6), found(0.0205, 0.0002)), IsEmpty());
   EXPECT_THAT(readoutRemark(rigWith(0), {}), IsEmpty()) << "no window";
+}
+
+TEST(StampRemark, SaysHowFarStampsAreOff) {
+  CalibrationEstimate estimate;
+  EXPECT_THAT(stampRemark(estimate), IsEmpty());
+  estimate.stamp_jitter_s = 0.0023;
+  EXPECT_THAT(stampRemark(estimate), HasSubstr("off by 2.3 ms"));
 }
 
 }  // namespace

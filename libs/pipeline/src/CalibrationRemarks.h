@@ -12,4 +12,7 @@ namespace lintel {
 /// where none is given, or a readout that is another. Empty: nothing.
 std::string readoutRemark(const Rig& given, const CalibrationEstimate& estimate);
 
+/// What it found about the images' stamps: that they are off, each by its own amount. Empty: nothing.
+std::string stampRemark(const CalibrationEstimate& estimate);
+
 }  // namespace lintel

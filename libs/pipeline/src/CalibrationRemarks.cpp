@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "ReadoutRemark.h"
+#include "CalibrationRemarks.h"
 
 #include <algorithm>
 #include <cmath>
@@ -30,6 +30,17 @@ std::string readoutRemark(const Rig& given, const CalibrationEstimate& estimate)
                 "that of the middle row",
                 shutter.c_str(), 1000 * estimate.readout_s, 1000 * estimate.sigma->readout_s,
                 estimate.readout_s / given.camera.height);
+  return text;
+}
+
+std::string stampRemark(const CalibrationEstimate& estimate) {
+  if (!(estimate.stamp_jitter_s > 0)) return {};
+  char text[300];
+  std::snprintf(text, sizeof text,
+                "the images' stamps are off by %.1f ms (standard deviation), each by its own amount, as when they say "
+                "when an image came in; the IMU counts less for that, and with the camera's own stamps the result "
+                "would be better",
+                1000 * estimate.stamp_jitter_s);
   return text;
 }
 
