@@ -248,6 +248,7 @@ const MapSection kMapSections[kMapSectionCount] = {{"RIG_", encodeRig, decodeRig
                                                    {"PLNE", encodePlanes, decodePlanes},
                                                    {"PIEC", encodePieces, decodePieces},
                                                    {"IMU_", encodeImu, decodeImu},
+                                                   {"STMP", encodeStamps, decodeStamps},
                                                    {"VIEW", encodeViews, decodeViews}};
 
 }  // namespace lintel

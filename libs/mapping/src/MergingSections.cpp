@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Sections of the map file that only merging reads: pieces, the IMU between keyframes, what places look like.
+// Sections of the map file that only merging reads: pieces, the IMU between keyframes and by how
+// much the stamps are off between which it is, what places look like.
 #include "MapChecks.h"
 #include "MapSections.h"
 #include "lintel/inertial/Preintegration.h"
@@ -9,7 +10,8 @@ namespace lintel {
 namespace {
 
 constexpr std::size_t kPieceSize = 8 + 8 + 8 + 8 + 4 + 4, kTextSize = 8, kImuSize = 8 + 1 + 6 * 8 + 4 * 8 + 8,
-                      kSampleSize = 8 + 6 * 8 + 1, kViewSize = 4 + 8 + 8, kFeatureSize = 4 + 4 + 8 + 1 + 4 * 8;
+                      kSampleSize = 8 + 6 * 8 + 1, kStampSize = 8 + 8, kViewSize = 4 + 8 + 8,
+                      kFeatureSize = 4 + 4 + 8 + 1 + 4 * 8;
 
 enum KeyframeFlag : std::uint8_t { kAtRest = 1 };
 
@@ -86,6 +88,34 @@ void decodeImu(ByteReader& in, LineMap& map) {
     if (k >= map.keyframes.size()) throw ByteReaderError("names a keyframe that does not exist");
     map.keyframes[k].at_rest = (in.u8() & kAtRest) != 0;
     map.keyframes[k].imu = decodeImu(in);
+  }
+}
+
+/// Of keyframes whose images' stamps are off, by their places.
+void encodeStamps(const LineMap& map, ByteWriter& out) {
+  ByteWriter records;
+  std::uint64_t n = 0;
+  for (std::size_t k = 0; k < map.keyframes.size(); ++k) {
+    const auto& imu = map.keyframes[k].imu;
+    if (!imu || imu->stampSigma() <= 0) continue;
+    ++n;
+    records.u64(k), records.f64(imu->stampSigma());
+  }
+  if (n == 0) return;
+  out.u64(n);
+  out.append(records);
+}
+
+void decodeStamps(ByteReader& in, LineMap& map) {
+  const std::size_t n = in.count(kStampSize);
+  for (std::size_t i = 0; i < n; ++i) {
+    const std::uint64_t k = in.u64();
+    const double sigma_s = in.f64();
+    if (k >= map.keyframes.size() || !map.keyframes[k].imu) throw ByteReaderError("has stamps of what has no IMU");
+    if (!(sigma_s > 0 && sigma_s < 1)) throw ByteReaderError("has stamps that are off by no time that can be");
+    auto imu = std::make_shared<Preintegration>(*map.keyframes[k].imu);
+    imu->setStampNoise(sigma_s, Preintegration::Matrix9::Zero());  // the states count it: BatchProblem
+    map.keyframes[k].imu = imu;
   }
 }
 

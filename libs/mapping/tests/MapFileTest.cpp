@@ -70,6 +70,7 @@ LineMap sampleMap() {
   map.pieces = {{0, 5, 8, 0, 0, 0}, {9, 1403636579763555584, 1403636579763555588, 20, 0, 1}};
   auto imu = std::make_shared<Preintegration>(ImuBias{vec(), vec()}, ImuNoise{1e-3, 1e-4, 1e-5, 1e-6});
   imu->append({{5, vec(), vec()}, {1000005, vec(), vec(), true}, {2000005, vec(), vec()}});
+  imu->setStampNoise(0.002, Preintegration::Matrix9::Zero());
   map.keyframes[1].imu = imu;
   map.keyframes[1].at_rest = true;
   map.views.push_back({1, {17, {{{1.5F, 2.25F}, -1, 0, {1, 2, 3, ~std::uint64_t{0}}}, {{0, 0}, 7, 2, {}}}}});
@@ -160,6 +161,7 @@ TEST_F(MapFile, EveryValueReturnsToTheBit) {
   EXPECT_TRUE(back.keyframes[1].at_rest);
   EXPECT_EQ(back.keyframes[1].imu->deltaP(), map.keyframes[1].imu->deltaP());
   EXPECT_TRUE(back.keyframes[1].imu->samples()[1].bridged);
+  EXPECT_EQ(back.keyframes[1].imu->stampSigma(), 0.002);
   ASSERT_EQ(back.views.size(), 1u);
   EXPECT_EQ(back.views[0].looks.t_ns, 17);
   EXPECT_EQ(back.views[0].looks.features[0].px, Eigen::Vector2f(1.5F, 2.25F));
@@ -260,9 +262,15 @@ TEST_F(MapFile, WholeSectionsThatSayWhatCannotBeAreRefused) {
       {"a piece that ends before it begins", [](LineMap& m) { m.pieces[0].last_ns = 4; }},
       {"pieces out of order", [](LineMap& m) { m.pieces[1].first_keyframe = 0; }},
       {"a piece beyond its trajectory", [](LineMap& m) { m.pieces[1].first_pose = 31; }},
-      {"an hour of IMU from one keyframe to the next", [](LineMap& m) {
+      {"an hour of IMU from one keyframe to the next",
+       [](LineMap& m) {
          auto imu = std::make_shared<Preintegration>(ImuBias{}, ImuNoise{});
          imu->append({{5, {}, {}}, {4'000'000'000'000, {}, {}}});
+         m.keyframes[1].imu = imu;
+       }},
+      {"stamps that are off by no time that can be", [](LineMap& m) {
+         auto imu = std::make_shared<Preintegration>(*m.keyframes[1].imu);
+         imu->setStampNoise(2, Preintegration::Matrix9::Zero());
          m.keyframes[1].imu = imu;
        }}};
   for (const auto& [what, change] : cases) {
