@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "lintel/inertial/StampJitter.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "lintel/geometry/Rotation.h"
