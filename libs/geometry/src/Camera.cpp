@@ -119,7 +119,7 @@ Eigen::Vector3d Camera::ray(const Eigen::Vector2d& px) const {
 
 Eigen::Vector2d Camera::project(const Eigen::Vector3d& p_c) const {
   if (!wide()) return toPixel(p_c.head<2>() / awayFromZero(p_c.z()));
-  const Eigen::Vector2d d = fisheyeImage(*this, p_c).position;
+  const Eigen::Vector2d d = fisheyePosition(*this, p_c);
   return {fx * d.x() + cx, fy * d.y() + cy};
 }
 

@@ -22,13 +22,18 @@ struct RadiusOfAngle {
   }
 };
 
+/// Where the direction of (x, y) is not defined.
+bool onAxis(double r2, double size2) { return r2 < 1e-16 * size2; }
+
+double inverseDepth(const Eigen::Vector3d& p) { return 1 / (std::abs(p.z()) > 1e-12 ? p.z() : 1e-12); }
+
 LensImage equidistantImage(const Camera& camera, const Eigen::Vector3d& p) {
   const double r = p.head<2>().norm(), size2 = p.squaredNorm(), theta = std::atan2(r, p.z());
   const RadiusOfAngle image(camera, theta);
   LensImage out;
   out.valid = image.derivative > kFlat;
-  if (r * r < 1e-16 * size2) {  // on the axis, where the direction of (x, y) is not defined
-    const double scale = 1 / (std::abs(p.z()) > 1e-12 ? p.z() : 1e-12);
+  if (onAxis(r * r, size2)) {
+    const double scale = inverseDepth(p);
     out.position = p.head<2>() * scale;
     out.by_point << scale, 0, -p.x() * scale * scale, 0, scale, -p.y() * scale * scale;
     out.by_coefficients.setZero();
@@ -142,6 +147,13 @@ LensImage fisheyeImage(const Camera& camera, const Eigen::Vector3d& p_c) {
   if (camera.model == LensModel::kEquidistant) return equidistantImage(camera, p_c);
   const bool two = camera.model == LensModel::kDoubleSphere;
   return sphereImage(two ? doubleSphere(camera, p_c) : extendedUnified(camera, p_c), p_c);
+}
+
+Eigen::Vector2d fisheyePosition(const Camera& camera, const Eigen::Vector3d& p_c) {
+  if (camera.model != LensModel::kEquidistant) return fisheyeImage(camera, p_c).position;
+  const double r2 = p_c.head<2>().squaredNorm(), r = std::sqrt(r2);
+  if (onAxis(r2, p_c.squaredNorm())) return p_c.head<2>() * inverseDepth(p_c);
+  return p_c.head<2>() * (RadiusOfAngle(camera, std::atan2(r, p_c.z())).radius / r);
 }
 
 bool fisheyeRay(const Camera& camera, const Eigen::Vector2d& position, Eigen::Vector3d& ray) {

@@ -18,6 +18,9 @@ struct LensImage {
 /// Of the models that are wide.
 LensImage fisheyeImage(const Camera& camera, const Eigen::Vector3d& p_c);
 
+/// Its position alone.
+Eigen::Vector2d fisheyePosition(const Camera& camera, const Eigen::Vector3d& p_c);
+
 /// The unit ray of a position in that image; false where there is none.
 bool fisheyeRay(const Camera& camera, const Eigen::Vector2d& position, Eigen::Vector3d& ray);
 

@@ -35,13 +35,13 @@ std::optional<SideLevels> sideLevels(const LineCamera& camera, const cv::Mat& im
   const Eigen::Vector2d n = line.normal();
   for (int i = 0; i < kSamples; ++i) {
     const Eigen::Vector2d u = line.at((i + 0.5) / kSamples);
-    if (!camera.sees(u, kBeside_px + 2, line.axis)) continue;
-    const Eigen::Vector2d px = camera.toImage(u, line.axis),
-                          step = kBeside_px * (camera.imageJacobian(u, line.axis) * n).normalized();
+    const auto px = camera.seenAt(u, line.axis);
+    if (!px || !camera.uses(*px, kBeside_px + 2)) continue;
+    const Eigen::Vector2d step = kBeside_px * (camera.imageJacobian(u, line.axis) * n).normalized();
     const auto grey = [&](const Eigen::Vector2d& at) {
       return static_cast<float>(image.at<unsigned char>(cvRound(at.y()), cvRound(at.x())));
     };
-    sides.dark += grey(px - step), sides.bright += grey(px + step);
+    sides.dark += grey(*px - step), sides.bright += grey(*px + step);
     ++samples;
   }
   if (2 * samples < kSamples) return std::nullopt;

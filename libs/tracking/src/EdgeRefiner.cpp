@@ -89,16 +89,16 @@ class Profiler {
   /// is not used.
   bool look(double s, double centre_px, int reach, Sample& sample) {
     const Eigen::Vector2d u = line_.start + s * d_ + centre_px * n_;
-    if (!camera_.mayBeSeen(u, line_.axis)) return false;
+    const auto px = camera_.seenAt(u, line_.axis);
+    if (!px) return false;
     if (std::abs(s - step_at_) > step_valid_px_) {
       step_ = camera_.imageJacobian(u, line_.axis) * n_;
       step_at_ = s;
       stride_ = step_.norm();
     }
-    const Eigen::Vector2d px = camera_.toImage(u, line_.axis);
-    if (!camera_.uses(px, scale_ * ((reach + 1) * std::max(stride_, 1.0) + 2))) return false;
+    if (!camera_.uses(*px, scale_ * ((reach + 1) * std::max(stride_, 1.0) + 2))) return false;
     GradientProfile profile;
-    gradientsAcross(image_, px / scale_, step_, stride_, reach, profile);  // of the level: there a step is scale px
+    gradientsAcross(image_, *px / scale_, step_, stride_, reach, profile);  // of the level: there a step is scale px
     sample = {};
     sample.s = s;
     findPeaks(profile, reach, sample);
@@ -277,12 +277,12 @@ std::optional<ImageLine> EdgeRefiner::orient(const cv::Mat& image, const ImageLi
   const Eigen::Vector2d n = line.normal();
   for (int i = 1; i <= 5; ++i) {
     const Eigen::Vector2d u = line.at(0.2 * i - 0.1);
-    if (!camera_.sees(u, 4, line.axis)) continue;
-    const Eigen::Vector2d px = camera_.toImage(u, line.axis),
-                          step = (camera_.imageJacobian(u, line.axis) * n).normalized();
+    const auto px = camera_.seenAt(u, line.axis);
+    if (!px || !camera_.uses(*px, 4)) continue;
+    const Eigen::Vector2d step = (camera_.imageJacobian(u, line.axis) * n).normalized();
     float strongest = 0;
     GradientProfile profile;
-    gradientsAcross(image, px, step, 1, 1, profile);
+    gradientsAcross(image, *px, step, 1, 1, profile);
     for (int k = 0; k < 5; ++k)
       if (const float g = profile[static_cast<std::size_t>(k)]; std::abs(g) > std::abs(strongest)) strongest = g;
     balance += strongest;

@@ -26,9 +26,22 @@ void totalLeastSquares(const std::vector<Eigen::Vector2d>& points, RobustLine& f
   fit.line.end = mean + d * d.dot(points[last] - mean);
 }
 
+constexpr double kBehind = -0.999;    ///< z of an axis that looks back: the least rotation to it is not defined
 constexpr double kLeastDepth = 0.1;   ///< of a ray along an axis: farther to the side the plane is stretched too much
 constexpr double kMostStretch = 1.4;  ///< tangent of the angle between a line's axis and its ends: 54 degrees
 constexpr double kRoom = 1.02;
+
+// R_c_a and its transpose times a vector, without the matrix: they are most of what a line through a wide lens costs.
+
+Eigen::Vector3d fromLineCamera(const Eigen::Vector3d& axis, const Eigen::Vector3d& v) {
+  const double along = axis.x() * v.x() + axis.y() * v.y(), c = v.z() - along / (1 + std::max(axis.z(), kBehind));
+  return {v.x() + axis.x() * c, v.y() + axis.y() * c, axis.z() * v.z() - along};
+}
+
+Eigen::Vector3d toLineCamera(const Eigen::Vector3d& axis, const Eigen::Vector3d& v) {
+  const double along = axis.x() * v.x() + axis.y() * v.y(), c = v.z() + along / (1 + std::max(axis.z(), kBehind));
+  return {v.x() - axis.x() * c, v.y() - axis.y() * c, axis.z() * v.z() + along};
+}
 
 }  // namespace
 
@@ -45,7 +58,7 @@ LineCamera::LineCamera(const Camera& camera, const ImageMask& mask)
 
 Eigen::Matrix3d LineCamera::R_c_a(const Eigen::Vector3d& a) {
   // the least rotation from the optical axis: x and y stay x and y where possible
-  const double c = 1 / (1 + std::max(a.z(), -0.999));
+  const double c = 1 / (1 + std::max(a.z(), kBehind));
   Eigen::Matrix3d R;
   R << 1 - a.x() * a.x() * c, -a.x() * a.y() * c, a.x(), -a.x() * a.y() * c, 1 - a.y() * a.y() * c, a.y(), -a.x(),
       -a.y(), a.z();
@@ -54,11 +67,11 @@ Eigen::Matrix3d LineCamera::R_c_a(const Eigen::Vector3d& a) {
 
 Eigen::Vector3d LineCamera::rayOf(const Eigen::Vector2d& u, const Eigen::Vector3d& axis) const {
   const Eigen::Vector3d ray = (u / focal_).homogeneous();
-  return camera_.wide() ? Eigen::Vector3d((R_c_a(axis) * ray).normalized()) : ray;
+  return camera_.wide() ? fromLineCamera(axis, ray).normalized() : ray;
 }
 
 Eigen::Vector2d LineCamera::ofRay(const Eigen::Vector3d& ray, const Eigen::Vector3d& axis) const {
-  const Eigen::Vector3d seen = R_c_a(axis).transpose() * ray;
+  const Eigen::Vector3d seen = toLineCamera(axis, ray);
   return focal_ * seen.head<2>() / std::max(seen.z(), kLeastDepth);
 }
 
@@ -84,12 +97,21 @@ ImageLine LineCamera::centred(const ImageLine& line) const {
 bool LineCamera::mayBeNear(const ImageLine& line, const ImageLine& other, double distance_px) const {
   if (!camera_.wide()) return true;
   // the axis of the other one, which is on it, from the great circle of this one
-  const Eigen::Vector3d normal = rayOf(line.start, line.axis).cross(rayOf(line.end, line.axis));
-  return std::abs(normal.dot(other.axis)) * focal_ <= (distance_px + 0.1 * other.length()) * normal.norm();
+  const Eigen::Vector3d normal = (line.start / focal_).homogeneous().cross((line.end / focal_).homogeneous());
+  const double reach = distance_px + 0.1 * other.length(),
+               across = focal_ * normal.dot(toLineCamera(line.axis, other.axis));
+  return across * across <= reach * reach * normal.squaredNorm();
 }
 
-bool LineCamera::mayBeSeenWide(const Eigen::Vector2d& u, const Eigen::Vector3d& axis) const {
-  return u.squaredNorm() <= kMostStretch * kMostStretch * focal_ * focal_ && rayOf(u, axis).z() >= least_cosine_;
+std::optional<Eigen::Vector2d> LineCamera::seenAt(const Eigen::Vector2d& u, const Eigen::Vector3d& axis) const {
+  if (!camera_.wide()) {
+    if (u.squaredNorm() > max_radius_ * max_radius_) return std::nullopt;
+    return camera_.toPixel(u / focal_);
+  }
+  if (u.squaredNorm() > kMostStretch * kMostStretch * focal_ * focal_) return std::nullopt;
+  const Eigen::Vector3d direction = fromLineCamera(axis, (u / focal_).homogeneous());
+  if (direction.z() < least_cosine_ * direction.norm()) return std::nullopt;
+  return camera_.project(direction);
 }
 
 Eigen::Matrix2d LineCamera::imageJacobian(const Eigen::Vector2d& u, const Eigen::Vector3d& axis) const {
@@ -116,7 +138,8 @@ ImageLine LineCamera::turned(const ImageLine& line, const Eigen::Quaterniond& R_
 }
 
 bool LineCamera::sees(const Eigen::Vector2d& u, double border_px, const Eigen::Vector3d& axis) const {
-  return mayBeSeen(u, axis) && uses(toImage(u, axis), border_px);
+  const auto px = seenAt(u, axis);
+  return px && uses(*px, border_px);
 }
 
 std::optional<ImageLine> LineCamera::clip(const ImageLine& line, double border_px) const {

@@ -60,10 +60,9 @@ class LineCamera {
   ImageLine lineFromImage(const Eigen::Vector2d& start_px, const Eigen::Vector2d& end_px) const;
   /// d image pixel / d undistorted pixel.
   Eigen::Matrix2d imageJacobian(const Eigen::Vector2d& u, const Eigen::Vector3d& axis = Eigen::Vector3d::UnitZ()) const;
-  /// Not so far out that the lens model folds back into the image, or that the plane is stretched.
-  bool mayBeSeen(const Eigen::Vector2d& u, const Eigen::Vector3d& axis = Eigen::Vector3d::UnitZ()) const {
-    return camera_.wide() ? mayBeSeenWide(u, axis) : u.squaredNorm() <= max_radius_ * max_radius_;
-  }
+  /// As toImage; empty so far out that the lens model folds back into the image, or that the plane is stretched.
+  std::optional<Eigen::Vector2d> seenAt(const Eigen::Vector2d& u,
+                                        const Eigen::Vector3d& axis = Eigen::Vector3d::UnitZ()) const;
   /// Seen in the used part of the image, at least `border_px` from its edge.
   bool sees(const Eigen::Vector2d& u, double border_px, const Eigen::Vector3d& axis = Eigen::Vector3d::UnitZ()) const;
   /// The part of `line` that the image sees; empty when there is none.
@@ -80,7 +79,6 @@ class LineCamera {
   static Eigen::Matrix3d R_c_a(const Eigen::Vector3d& axis);
 
  private:
-  bool mayBeSeenWide(const Eigen::Vector2d& u, const Eigen::Vector3d& axis) const;
   Eigen::Vector2d ofRay(const Eigen::Vector3d& ray, const Eigen::Vector3d& axis) const;
   ImageLine between(const Eigen::Vector3d& start_ray, const Eigen::Vector3d& end_ray) const;
 
