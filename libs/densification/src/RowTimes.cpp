@@ -2,9 +2,12 @@
 #include "RowTimes.h"
 
 #include <algorithm>
+#include <cmath>
+#include <tuple>
 #include <unordered_map>
 
 #include "lintel/core/Quantiles.h"
+#include "lintel/factors/RowMotion.h"
 #include "lintel/geometry/Rotation.h"
 #include "lintel/mapping/KeyframeCameras.h"
 
@@ -13,6 +16,7 @@ namespace lintel {
 namespace {
 
 constexpr double kShort_s = 1e-4;  // of a readout: less than that is none
+constexpr double kReach_s = 0.01;  // of the IMU samples that count at an image, at least (RollingShutter.cpp)
 
 std::vector<double> usualInverseDistances(const MapMaterial& material) {
   std::unordered_map<FrameId, std::size_t> place;
@@ -38,17 +42,30 @@ RowTimes::RowTimes(const MapMaterial& material) : material_(material), readout_s
 void RowTimes::move(std::size_t k, std::vector<EdgeSegment>& edges) const {
   if (inverse_distance_.empty()) return;
   const RetiredKeyframe& keyframe = material_.keyframes[k];
-  const Rig& rig = material_.rig;
-  const Eigen::Vector3d omega_b = turnRate_b(keyframe), v_b = keyframe.T_w_b.q.conjugate() * keyframe.v_w_b;
-  const Eigen::Quaterniond R_c_b = rig.T_b_c.q.conjugate();
-  const Eigen::Vector3d omega_c = R_c_b * omega_b, v_c = R_c_b * (v_b + omega_b.cross(rig.T_b_c.p));
-  const auto moved = [&](const Eigen::Vector2d& px) -> Eigen::Vector2d {
-    const double dt_s = readout_s_ * (px.y() - 0.5 * (rig.camera.height - 1)) / rig.camera.height;
-    const Eigen::Vector3d ray =
-        expRotation(omega_c * dt_s) * rig.camera.ray(px).normalized() + v_c * (dt_s * inverse_distance_[k]);
-    return rig.camera.projects(ray) ? rig.camera.project(ray) : px;
+  const Camera& camera = material_.rig.camera;
+  const RowMotion motion(material_.rig.T_b_c, {keyframe.T_w_b.q.conjugate() * keyframe.v_w_b, turnRate_b(keyframe)},
+                         changeAt(k));
+  const auto rayAtFrameTime = [&](const Eigen::Vector2d& px) {
+    return motion.rayAtFrameTime(camera.ray(px).normalized(), rowShare(camera, px) * readout_s_, inverse_distance_[k]);
   };
-  for (EdgeSegment& edge : edges) edge.start_px = moved(edge.start_px), edge.end_px = moved(edge.end_px);
+  for (EdgeSegment& edge : edges)
+    std::tie(edge.start_px, edge.end_px) = lineAtFrameTime(camera, camera, edge.start_px, edge.end_px, rayAtFrameTime);
+}
+
+/// None where a map that was read has no IMU samples.
+MotionChange RowTimes::changeAt(std::size_t k) const {
+  static const ImuBatch kNone;
+  const RetiredKeyframe& keyframe = material_.keyframes[k];
+  const auto samplesOf = [](const RetiredKeyframe& of) -> const ImuBatch& {
+    return of.imu ? of.imu->samples() : kNone;
+  };
+  const ImuBatch &before = samplesOf(keyframe),
+                 &after = k + 1 < material_.keyframes.size() ? samplesOf(material_.keyframes[k + 1]) : kNone;
+  const bool goes_on = !after.empty() && after.front().t_ns == keyframe.t_ns;
+  if (before.empty() && !goes_on) return {};
+  const Preintegration& imu = before.empty() ? *material_.keyframes[k + 1].imu : *keyframe.imu;
+  return motionChange(before, goes_on ? after : kNone, std::max(kReach_s, 0.5 * std::abs(readout_s_)), keyframe.bias,
+                      keyframe.T_w_b.q, imu.gravityW());
 }
 
 Eigen::Vector3d RowTimes::turnRate_b(const RetiredKeyframe& keyframe) const {

@@ -3,14 +3,15 @@
 
 #include <vector>
 
+#include "lintel/inertial/MotionChange.h"
 #include "lintel/mapping/MapMaterial.h"
 #include "lintel/tracking/SegmentDetector.h"
 
 namespace lintel {
 
-/// Where the edges of a rolling shutter's image would have been at the frame's time, as tracked lines are kept: each
-/// end is moved by the camera's motion from its row's time, as if it were as far away as points usually are. Edges of a
-/// global shutter stay.
+/// Where the edges of a rolling shutter's image would have been at the frame's time, as tracked lines are kept: moved
+/// by the camera's motion from their rows' times (RowMotion.h), as if they were as far away as points usually are.
+/// Edges of a global shutter stay.
 class RowTimes {
  public:
   explicit RowTimes(const MapMaterial& material);
@@ -19,6 +20,7 @@ class RowTimes {
 
  private:
   Eigen::Vector3d turnRate_b(const RetiredKeyframe& keyframe) const;
+  MotionChange changeAt(std::size_t keyframe) const;
 
   const MapMaterial& material_;
   double readout_s_;

@@ -4,6 +4,7 @@
 #include <Eigen/LU>
 #include <algorithm>
 
+#include "lintel/factors/EdgeFit.h"
 #include "lintel/geometry/Rotation.h"
 
 namespace lintel {
@@ -103,13 +104,7 @@ double wideScale_px(const Camera& camera, const Eigen::Vector3d& ray, const Eige
 // corrected camera the edge is another curve, and the line that fits it best does not end at the same pixels: all of
 // the edge moves it. Taken at its ends alone, an observation would be biased towards the calibrated camera, more than
 // by the noise where a lens bends edges strongly. So the edge is sampled along the calibrated camera's line, and the
-// ends are those of the line that fits the samples best. Gauss-Legendre nodes: exact for bends of the fourth order.
-constexpr int kSamples = 3;
-constexpr double kNodes[kSamples] = {-0.774596669241483377, 0, 0.774596669241483377};  // of the line from -1 to 1
-constexpr double kWeights[kSamples] = {5.0 / 18, 8.0 / 18, 5.0 / 18};
-
-/// How much sample `i` moves the end at `side` (-1: start, 1: end) of the line that fits best.
-double shareOf(int i, double side) { return kWeights[i] * (1 + 3 * side * kNodes[i]); }
+// ends are those of the line that fits the samples best.
 
 /// Moves an end across its line, to where the fit has it, and its Jacobian with it. `across`: unit, across the line;
 /// `offset`, `offset_jacobian`: of the fit's end from the present one along `across`, per row of the ray.
@@ -162,15 +157,15 @@ void fitWideEnds(const Camera& calibrated, const Camera& camera, const Eigen::Ve
   const Eigen::Vector3d middle = (a + b).normalized(), along = (b - a) / 2 / middle.dot(a);
   const Eigen::Vector3d to = (ends.first.ray + ends.second.ray).normalized();
   const Eigen::Vector3d across = ends.first.ray.cross(ends.second.ray).normalized();
-  RayObservation samples[kSamples];
-  for (int i = 0; i < kSamples; ++i)
-    samples[i] = wideObservation(camera, camera.ray(calibrated.project(middle + kNodes[i] * along)));
+  RayObservation samples[EdgeFit::kSamples];
+  for (int i = 0; i < EdgeFit::kSamples; ++i)
+    samples[i] = wideObservation(camera, camera.ray(calibrated.project(middle + EdgeFit::kNodes[i] * along)));
   for (LineEnd* end : {&ends.first, &ends.second}) {
     const double side = end == &ends.first ? -1 : 1, scale = to.dot(end->ray);
     double offset = 0;
     RayObservation::Row J = RayObservation::Row::Zero();
-    for (int i = 0; i < kSamples; ++i) {
-      const double share = shareOf(i, side) * scale / to.dot(samples[i].ray);
+    for (int i = 0; i < EdgeFit::kSamples; ++i) {
+      const double share = EdgeFit::share(i, side) * scale / to.dot(samples[i].ray);
       offset += share * across.dot(samples[i].ray);
       J += share * acrossJacobian(samples[i], across);
     }
@@ -183,16 +178,16 @@ void fitEnds(const Camera& calibrated, const Camera& camera, const Eigen::Vector
              const Eigen::Vector2d& normal, std::pair<LineEnd, LineEnd>& ends) {
   const Eigen::Vector3d across(normal.x(), normal.y(), 0);
   const double line = across.dot(ends.first.ray);
-  RayObservation samples[kSamples];
-  for (int i = 0; i < kSamples; ++i) {
-    const Eigen::Vector2d at = (a + b) / 2 + kNodes[i] * (b - a) / 2;
+  RayObservation samples[EdgeFit::kSamples];
+  for (int i = 0; i < EdgeFit::kSamples; ++i) {
+    const Eigen::Vector2d at = (a + b) / 2 + EdgeFit::kNodes[i] * (b - a) / 2;
     samples[i] = linearised(camera, camera.normalise(calibrated.project(at.homogeneous()), at));
   }
   for (LineEnd* end : {&ends.first, &ends.second}) {
     double offset = -line;
     RayObservation::Row J = RayObservation::Row::Zero();
-    for (int i = 0; i < kSamples; ++i) {
-      const double share = shareOf(i, end == &ends.first ? -1 : 1);
+    for (int i = 0; i < EdgeFit::kSamples; ++i) {
+      const double share = EdgeFit::share(i, end == &ends.first ? -1 : 1);
       offset += share * across.dot(samples[i].ray);
       J += share * acrossJacobian(samples[i], across);
     }

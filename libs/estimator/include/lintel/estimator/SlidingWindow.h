@@ -15,6 +15,7 @@
 #include "lintel/factors/FrameMotion.h"
 #include "lintel/factors/ImageObservations.h"
 #include "lintel/factors/PriorFactors.h"
+#include "lintel/factors/RowMotion.h"
 #include "lintel/factors/StateBlocks.h"
 #include "lintel/inertial/Preintegration.h"
 
@@ -175,9 +176,7 @@ class SlidingWindow {
   RowTime rowTime(const Eigen::Vector2d& seen_px) const {
     return {shareOfReadout(seen_px), unrolled_s - given_readout_s_};
   }
-  double shareOfReadout(const Eigen::Vector2d& seen_px) const {
-    return (seen_px.y() - 0.5 * (camera_.height - 1)) / std::max(camera_.height, 1);
-  }
+  double shareOfReadout(const Eigen::Vector2d& seen_px) const { return rowShare(camera_, seen_px); }
 
   Pose T_w_c(const WindowFrame& f) const { return f.T_w_b() * T_b_c(); }
 
