@@ -7,7 +7,7 @@
 #include <unordered_map>
 
 #include "lintel/core/Quantiles.h"
-#include "lintel/factors/RowMotion.h"
+#include "lintel/geometry/Frames.h"
 #include "lintel/geometry/Rotation.h"
 #include "lintel/mapping/KeyframeCameras.h"
 
@@ -16,7 +16,6 @@ namespace lintel {
 namespace {
 
 constexpr double kShort_s = 1e-4;  // of a readout: less than that is none
-constexpr double kReach_s = 0.01;  // of the IMU samples that count at an image, at least (RollingShutter.cpp)
 
 std::vector<double> usualInverseDistances(const MapMaterial& material) {
   std::unordered_map<FrameId, std::size_t> place;
@@ -41,10 +40,8 @@ RowTimes::RowTimes(const MapMaterial& material) : material_(material), readout_s
 
 void RowTimes::move(std::size_t k, std::vector<EdgeSegment>& edges) const {
   if (inverse_distance_.empty()) return;
-  const RetiredKeyframe& keyframe = material_.keyframes[k];
   const Camera& camera = material_.rig.camera;
-  const RowMotion motion(material_.rig.T_b_c, {keyframe.T_w_b.q.conjugate() * keyframe.v_w_b, turnRate_b(keyframe)},
-                         changeAt(k));
+  const RowMotion motion = motionDuring(k);
   const auto rayAtFrameTime = [&](const Eigen::Vector2d& px) {
     return motion.rayAtFrameTime(camera.ray(px).normalized(), rowShare(camera, px) * readout_s_, inverse_distance_[k]);
   };
@@ -52,25 +49,18 @@ void RowTimes::move(std::size_t k, std::vector<EdgeSegment>& edges) const {
     std::tie(edge.start_px, edge.end_px) = lineAtFrameTime(camera, camera, edge.start_px, edge.end_px, rayAtFrameTime);
 }
 
-/// None where a map that was read has no IMU samples.
-MotionChange RowTimes::changeAt(std::size_t k) const {
-  static const ImuBatch kNone;
+RowMotion RowTimes::motionDuring(std::size_t k) const {
   const RetiredKeyframe& keyframe = material_.keyframes[k];
-  const auto samplesOf = [](const RetiredKeyframe& of) -> const ImuBatch& {
-    return of.imu ? of.imu->samples() : kNone;
-  };
-  const ImuBatch &before = samplesOf(keyframe),
-                 &after = k + 1 < material_.keyframes.size() ? samplesOf(material_.keyframes[k + 1]) : kNone;
-  const bool goes_on = !after.empty() && after.front().t_ns == keyframe.t_ns;
-  if (before.empty() && !goes_on) return {};
-  const Preintegration& imu = before.empty() ? *material_.keyframes[k + 1].imu : *keyframe.imu;
-  return motionChange(before, goes_on ? after : kNone, std::max(kReach_s, 0.5 * std::abs(readout_s_)), keyframe.bias,
-                      keyframe.T_w_b.q, imu.gravityW());
+  const auto imu = imuAtKeyframe(material_.keyframes, k, std::max(kImuReach_s, 0.5 * std::abs(readout_s_)));
+  FrameMotion motion = motionOf(material_.keyframes, k);
+  if (!imu) motion.omega_b = turnRateByPoses_b(keyframe);
+  return {material_.rig.T_b_c, motion,
+          imu ? motionChange(*imu, keyframe.bias.accel, keyframe.T_w_b.q, gravityW(material_.rig.gravity_m_s2))
+              : MotionChange{}};
 }
 
-Eigen::Vector3d RowTimes::turnRate_b(const RetiredKeyframe& keyframe) const {
-  if (keyframe.imu && !keyframe.imu->samples().empty()) return motionOf(keyframe).omega_b;
-  // a map that was read has no IMU samples: from the poses before and after
+/// A map that was read may have no IMU samples.
+Eigen::Vector3d RowTimes::turnRateByPoses_b(const RetiredKeyframe& keyframe) const {
   const auto& poses = material_.trajectory;
   const auto at = std::lower_bound(poses.begin(), poses.end(), keyframe.t_ns,
                                    [](const auto& pose, std::int64_t t_ns) { return pose.first < t_ns; });

@@ -3,7 +3,7 @@
 
 #include <vector>
 
-#include "lintel/inertial/MotionChange.h"
+#include "lintel/factors/RowMotion.h"
 #include "lintel/mapping/MapMaterial.h"
 #include "lintel/tracking/SegmentDetector.h"
 
@@ -19,8 +19,8 @@ class RowTimes {
   void move(std::size_t keyframe, std::vector<EdgeSegment>& edges) const;
 
  private:
-  Eigen::Vector3d turnRate_b(const RetiredKeyframe& keyframe) const;
-  MotionChange changeAt(std::size_t keyframe) const;
+  RowMotion motionDuring(std::size_t keyframe) const;
+  Eigen::Vector3d turnRateByPoses_b(const RetiredKeyframe& keyframe) const;
 
   const MapMaterial& material_;
   double readout_s_;

@@ -81,6 +81,7 @@ BatchProblem::BatchProblem(const Rig& calibrated, const EstimatorParams& estimat
     const FrameId id = material.keyframes[k].id;
     if (id >= keyframe_places_.size()) keyframe_places_.resize(id + 1, -1);
     keyframe_places_[id] = static_cast<std::int64_t>(k);
+    motions_.push_back(motionOf(material_.keyframes, k));
   }
   placeBlocks();
   addPriors();

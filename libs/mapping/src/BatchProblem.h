@@ -102,6 +102,7 @@ class BatchProblem {
   std::vector<std::size_t> points_, lines_;  // places in the material
   std::vector<ParallelLines> groups_;
   std::vector<std::int64_t> keyframe_places_;  // by id
+  std::vector<FrameMotion> motions_;           // by place
   std::vector<double> values_;
   std::size_t points_at_ = 0, lines_at_ = 0, extrinsics_at_ = 0, correction_at_ = 0, directions_at_ = 0,
               keyframes_at_ = 0;

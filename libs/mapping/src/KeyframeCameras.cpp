@@ -5,10 +5,21 @@
 
 namespace lintel {
 
-FrameMotion motionOf(const RetiredKeyframe& keyframe) {
+std::optional<ImuAt> imuAtKeyframe(const std::vector<RetiredKeyframe>& keyframes, std::size_t k, double reach_s) {
+  static const ImuBatch kNone;
+  const ImuBatch& before = keyframes[k].imu ? keyframes[k].imu->samples() : kNone;
+  const Preintegration* next = k + 1 < keyframes.size() ? keyframes[k + 1].imu.get() : nullptr;
+  const bool goes_on = next && !next->samples().empty() && next->samples().front().t_ns == keyframes[k].t_ns;
+  return imuAt(before, goes_on ? next->samples() : kNone, reach_s);
+}
+
+FrameMotion motionOf(const std::vector<RetiredKeyframe>& keyframes, std::size_t k) {
+  const RetiredKeyframe& keyframe = keyframes[k];
   FrameMotion motion;
   motion.v_b = keyframe.T_w_b.q.conjugate() * keyframe.v_w_b;
-  if (keyframe.imu && !keyframe.imu->samples().empty())
+  if (const auto imu = imuAtKeyframe(keyframes, k))
+    motion.omega_b = imu->gyro - keyframe.bias.gyro;
+  else if (keyframe.imu && !keyframe.imu->samples().empty())
     motion.omega_b = keyframe.imu->samples().back().gyro - keyframe.bias.gyro;
   return motion;
 }
@@ -17,11 +28,12 @@ KeyframeCameras::KeyframeCameras(const MapMaterial& material) : camera_(material
   const PoseBlock extrinsics = toBlock(material.rig.T_b_c);
   CorrectionBlock correction = CorrectionBlock::Zero();
   correction[kTimeOffsetAt] = material.time_offset_s;
-  for (const RetiredKeyframe& keyframe : material.keyframes) {
+  for (std::size_t k = 0; k < material.keyframes.size(); ++k) {
+    const RetiredKeyframe& keyframe = material.keyframes[k];
     if (keyframe.id >= places_.size()) places_.resize(keyframe.id + 1, -1);
     places_[keyframe.id] = static_cast<std::int64_t>(T_w_c_.size());
     const PoseBlock pose = toBlock(keyframe.T_w_b);
-    const CameraView view(pose.data(), extrinsics.data(), correction.data(), motionOf(keyframe), false);
+    const CameraView view(pose.data(), extrinsics.data(), correction.data(), motionOf(material.keyframes, k), false);
     T_w_c_.push_back({Eigen::Quaterniond(view.R_c_w.transpose()).normalized(), view.p_w_c});
     R_c_w_.push_back(view.R_c_w);
   }

@@ -9,6 +9,7 @@
 
 #include "lintel/core/Quantiles.h"
 #include "lintel/factors/RowMotion.h"
+#include "lintel/geometry/Frames.h"
 #include "lintel/geometry/PluckerLine.h"
 
 namespace lintel {
@@ -16,10 +17,6 @@ namespace {
 
 constexpr double kShort_s = 0.001;  ///< the residuals' first order is enough for shorter ones
 constexpr double kSame_px = 0.01;   ///< a sighting that moves by less is left as it is: far below its noise
-
-/// Around an image IMU samples count that are at most so far away, at least: gyroscopes' noise makes an error of 0.003
-/// px at the end of a readout of 20 ms then.
-constexpr double kReach_s = 0.01;
 
 /// The camera during one image.
 struct MovingCamera {
@@ -70,16 +67,11 @@ class Unroller {
     return 1 / std::max((p_w - camera.T_w_c.p).norm(), 1e-3);
   }
 
-  /// By the IMU before and after the frame.
   MotionChange changeAt(std::size_t i) const {
-    static const ImuBatch kNone;
     const WindowFrame& frame = window_.frames[i];
-    const Preintegration *before = frame.imu.get(),
-                         *after = i + 1 < window_.frames.size() ? window_.frames[i + 1].imu.get() : nullptr;
-    if (!before && !after) return {};
-    return motionChange(before ? before->samples() : kNone, after ? after->samples() : kNone,
-                        std::max(kReach_s, 0.5 * std::abs(window_.unrolled_s)), biasOf(frame.motion.data()),
-                        frame.T_w_b().q, (before ? before : after)->gravityW());
+    const auto imu = window_.imuAtFrame(i, std::max(kImuReach_s, 0.5 * std::abs(window_.unrolled_s)));
+    if (!imu) return {};
+    return motionChange(*imu, biasOf(frame.motion.data()).accel, frame.T_w_b().q, gravityW(window_.gravity_m_s2()));
   }
 
   /// Of the points that the newest frame sees; 0 without any.

@@ -9,7 +9,10 @@
 namespace lintel {
 
 SlidingWindow::SlidingWindow(const Rig& rig)
-    : extrinsics(toBlock(rig.T_b_c)), camera_(rig.camera), given_readout_s_(rig.readout_s()) {}
+    : extrinsics(toBlock(rig.T_b_c)),
+      camera_(rig.camera),
+      given_readout_s_(rig.readout_s()),
+      gravity_m_s2_(rig.gravity_m_s2) {}
 
 Camera SlidingWindow::correctedCamera() const { return lintel::correctedCamera(camera_, correction.data()); }
 
@@ -58,6 +61,15 @@ void SlidingWindow::addFrame(WindowFrame frame, const FrameTracks& tracks) {
     track.sightings.push_back({frame.id, start, end, o.start_px, o.end_px, o.sigma_px, o.start_px, o.end_px});
   }
   frames.push_back(std::move(frame));
+  for (std::size_t i = frames.size() - std::min<std::size_t>(frames.size(), 2); i < frames.size(); ++i)
+    if (const auto imu = imuAtFrame(i)) frames[i].gyro = imu->gyro;
+}
+
+std::optional<ImuAt> SlidingWindow::imuAtFrame(std::size_t i, double reach_s) const {
+  static const ImuBatch kNone;
+  const Preintegration *before = frames[i].imu.get(),
+                       *after = i + 1 < frames.size() ? frames[i + 1].imu.get() : nullptr;
+  return imuAt(before ? before->samples() : kNone, after ? after->samples() : kNone, reach_s);
 }
 
 void SlidingWindow::relinearise() {

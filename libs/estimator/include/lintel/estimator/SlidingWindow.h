@@ -17,6 +17,7 @@
 #include "lintel/factors/PriorFactors.h"
 #include "lintel/factors/RowMotion.h"
 #include "lintel/factors/StateBlocks.h"
+#include "lintel/inertial/ImuAt.h"
 #include "lintel/inertial/Preintegration.h"
 
 namespace lintel {
@@ -39,7 +40,7 @@ struct WindowFrame {
   PoseBlock pose = toBlock(Pose{});                ///< T_w_b
   MotionBlock motion = MotionBlock::Zero();        ///< velocity and biases
   std::shared_ptr<Preintegration> imu;             ///< from the frame before; null for the first
-  Eigen::Vector3d gyro = Eigen::Vector3d::Zero();  ///< measured at t_ns, bias included [rad/s]
+  Eigen::Vector3d gyro = Eigen::Vector3d::Zero();  ///< at t_ns, bias included [rad/s] (ImuAt.h)
   bool at_rest = false;                            ///< gets a zero-velocity observation
   bool still = false;                              ///< has not moved since the frame before (RestDetection)
   bool blind = false;                              ///< sees next to nothing that is placed: the IMU carries it
@@ -158,7 +159,7 @@ class SlidingWindow {
   WindowFrame& frame(FrameId id);
   double* block(const BlockKey& key);  ///< throws std::out_of_range
 
-  /// Appends a frame and its tracks.
+  /// Appends a frame and its tracks. The angular rates of the last two are those of the samples around them then.
   void addFrame(WindowFrame frame, const FrameTracks& tracks);
 
   /// Linearises the observations about the present correction, when it has left what they are linear within; not those
@@ -178,6 +179,10 @@ class SlidingWindow {
   }
   double shareOfReadout(const Eigen::Vector2d& seen_px) const { return rowShare(camera_, seen_px); }
 
+  /// What the IMU measured at the i-th frame; nothing where its samples are not known.
+  std::optional<ImuAt> imuAtFrame(std::size_t i, double reach_s = kImuReach_s) const;
+  double gravity_m_s2() const { return gravity_m_s2_; }
+
   Pose T_w_c(const WindowFrame& f) const { return f.T_w_b() * T_b_c(); }
 
   /// World position of a triangulated point; far away for one at infinity.
@@ -185,7 +190,7 @@ class SlidingWindow {
 
  private:
   Camera camera_;
-  double given_readout_s_;
+  double given_readout_s_, gravity_m_s2_;
   CorrectionBlock linearised_at_ = CorrectionBlock::Zero();
 };
 

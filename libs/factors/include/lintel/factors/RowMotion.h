@@ -8,7 +8,7 @@
 #include "lintel/factors/FrameMotion.h"
 #include "lintel/geometry/Camera.h"
 #include "lintel/geometry/Pose.h"
-#include "lintel/inertial/MotionChange.h"
+#include "lintel/inertial/ImuAt.h"
 
 namespace lintel {
 

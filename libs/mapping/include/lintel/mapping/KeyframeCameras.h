@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <optional>
 #include <vector>
 
 #include "lintel/factors/FrameMotion.h"
+#include "lintel/inertial/ImuAt.h"
 #include "lintel/mapping/MapMaterial.h"
 
 namespace lintel {
@@ -29,7 +31,11 @@ class KeyframeCameras {
   std::vector<Eigen::Matrix3d> R_c_w_;
 };
 
-/// How the body moves at a keyframe.
-FrameMotion motionOf(const RetiredKeyframe& keyframe);
+/// What the IMU measured at keyframe `k`; nothing where its samples are not known.
+std::optional<ImuAt> imuAtKeyframe(const std::vector<RetiredKeyframe>& keyframes, std::size_t k,
+                                   double reach_s = kImuReach_s);
+
+/// How the body moves at keyframe `k`.
+FrameMotion motionOf(const std::vector<RetiredKeyframe>& keyframes, std::size_t k);
 
 }  // namespace lintel

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "lintel/inertial/MotionChange.h"
+#include "lintel/inertial/ImuAt.h"
 
 #include <cmath>
 
@@ -8,10 +8,9 @@ namespace lintel {
 namespace {
 
 constexpr int kLeastSamples = 3;
-constexpr double kLeastSpread =
-    0.25;  ///< deviation of the samples' times, of `reach_s`: all of them on one side have 0.29
+constexpr double kLeastSpread = 0.25;  ///< deviation of the samples' times, of the reach; 0.29: many on one side
 
-/// Sums over samples at times relative to one of them.
+/// Sums over samples, at times relative to the one in question.
 struct Moments {
   int n = 0;
   double t = 0, tt = 0;
@@ -29,9 +28,8 @@ struct Moments {
 
 }  // namespace
 
-MotionChange motionChange(const ImuBatch& before, const ImuBatch& after, double reach_s, const ImuBias& bias,
-                          const Eigen::Quaterniond& R_w_b, const Eigen::Vector3d& gravity_w) {
-  if (before.empty() && after.empty()) return {};
+std::optional<ImuAt> imuAt(const ImuBatch& before, const ImuBatch& after, double reach_s) {
+  if (before.empty() && after.empty()) return std::nullopt;
   const std::int64_t t_ns = before.empty() ? after.front().t_ns : before.back().t_ns;
   Moments m;
   const auto add = [&](const ImuSample& sample) {
@@ -44,10 +42,16 @@ MotionChange motionChange(const ImuBatch& before, const ImuBatch& after, double 
   // the sample at t ends the one batch and begins the other
   for (auto sample = after.begin() + (before.empty() || after.empty() ? 0 : 1); sample != after.end() && add(*sample);)
     ++sample;
-  const double variance = m.n > 0 ? m.tt / m.n - (m.t / m.n) * (m.t / m.n) : 0;
-  if (m.n < kLeastSamples || variance < kLeastSpread * kLeastSpread * reach_s * reach_s) return {};
-  return {m.accel / m.n - bias.accel + R_w_b.conjugate() * gravity_w,
-          (m.t_gyro - m.t / m.n * m.gyro) / (m.n * variance)};
+  if (m.n < kLeastSamples) return std::nullopt;
+  const double mean_t = m.t / m.n, variance = m.tt / m.n - mean_t * mean_t;
+  if (variance < kLeastSpread * kLeastSpread * reach_s * reach_s) return std::nullopt;
+  const Eigen::Vector3d slope = (m.t_gyro - mean_t * m.gyro) / (m.n * variance);
+  return ImuAt{m.gyro / m.n - mean_t * slope, slope, m.accel / m.n};
+}
+
+MotionChange motionChange(const ImuAt& imu, const Eigen::Vector3d& accel_bias, const Eigen::Quaterniond& R_w_b,
+                          const Eigen::Vector3d& gravity_w) {
+  return {imu.accel - accel_bias + R_w_b.conjugate() * gravity_w, imu.gyro_slope};
 }
 
 }  // namespace lintel
