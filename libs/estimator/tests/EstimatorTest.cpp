@@ -397,6 +397,42 @@ TEST(Estimator, RestsWhileItsMotorsRunBeforeTakeOff) {
     ASSERT_LT((updates[k].T_w_b.p - updates[kMotorsOn].T_w_b.p).norm(), 0.02) << "drift, frame " << k;
 }
 
+/// Another motion, later.
+class Later : public Trajectory {
+ public:
+  Later(std::shared_ptr<const Trajectory> motion, double by_s) : motion_(std::move(motion)), by_s_(by_s) {}
+  KinematicState at(double t_s) const override { return motion_->at(t_s + by_s_); }
+
+ private:
+  std::shared_ptr<const Trajectory> motion_;
+  double by_s_;
+};
+
+TEST(Estimator, MotorsDoNotShrinkTheTimeOffset) {
+  // a rate that is one sample's is wrong by its vibration, and the slope of a line through wrong abscissas is too small
+  constexpr double kOffset_s = 0.002;
+  const auto motion = std::make_shared<FigureTrajectory>();
+  TrackedFlight flight = fly(ImuSimulatorParams{}, tracksFor(9, 0.1), Later(motion, kOffset_s));
+  const TrackedFlight on_time = fly(ImuSimulatorParams{}, tracksFor(9, 0.1), *motion);
+  std::mt19937_64 random(5);
+  std::normal_distribution<double> shaking(0, 0.15);
+  Eigen::Vector3d angle = Eigen::Vector3d::Zero(), vibration = Eigen::Vector3d::Zero();
+  for (std::size_t k = 0; k < flight.sim.frames.size(); ++k) {
+    ImuBatch& imu = flight.sim.frames[k].imu = on_time.sim.frames[k].imu;
+    for (std::size_t i = 0; i < imu.size(); ++i) {
+      if (i > 0 || k == 0) {  // a batch begins with the sample that ends the one before
+        const Eigen::Vector3d former = angle;
+        angle = Eigen::Vector3d(shaking(random), shaking(random), shaking(random));
+        vibration = angle - former;  // it does not turn the body
+      }
+      imu[i].gyro += vibration;
+    }
+  }
+  Estimator estimator(flight.rig, {});
+  for (const SimulatedFrame& frame : flight.sim.frames) estimator.process(frame.tracks, frame.imu);
+  EXPECT_NEAR(estimator.calibration().time_offset_s, kOffset_s, 0.15 * kOffset_s);
+}
+
 TEST(Estimator, PureRotationGivesNoPoseRatherThanAWrongOne) {
   FigureParams turning;
   turning.translation = 0;
