@@ -17,8 +17,9 @@ struct ImuAt {
   Eigen::Vector3d accel = Eigen::Vector3d::Zero();       ///< specific force [m/s^2]
 };
 
-/// Samples that are at most so far away count at an image. Within it a hand's or a vehicle's motion is steady, while
-/// motors' vibrations, which images with their exposure do not follow, average out.
+/// Samples that are at most so far away count at an image (10 ms, and a little for stamps that are not exact). Within
+/// it a hand's or a vehicle's motion is steady, while motors' vibrations, which images with their exposure do not
+/// follow, average out.
 constexpr double kImuReach_s = 0.0105;
 
 /// At the time t where `before` ends and `after` begins (one may be empty), by the samples within `reach_s` of it: the
