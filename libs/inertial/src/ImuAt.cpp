@@ -49,6 +49,11 @@ std::optional<ImuAt> imuAt(const ImuBatch& before, const ImuBatch& after, double
   return ImuAt{m.gyro / m.n - mean_t * slope, slope, m.accel / m.n};
 }
 
+std::optional<ImuAt> imuAt(const Preintegration* before, const Preintegration* after, double reach_s) {
+  static const ImuBatch kNone;
+  return imuAt(before ? before->samples() : kNone, after ? after->samples() : kNone, reach_s);
+}
+
 MotionChange motionChange(const ImuAt& imu, const Eigen::Vector3d& accel_bias, const Eigen::Quaterniond& R_w_b,
                           const Eigen::Vector3d& gravity_w) {
   return {imu.accel - accel_bias + R_w_b.conjugate() * gravity_w, imu.gyro_slope};

@@ -29,8 +29,8 @@ void expectTrue(const std::optional<ImuAt>& imu) {
 
 TEST(ImuAt, IsExactWhereTheRateIsALine) {
   expectTrue(imuAt(samples(-20, 0), samples(0, 20)));
-  expectTrue(imuAt(samples(-20, 0), {}));
-  expectTrue(imuAt({}, samples(0, 20)));
+  expectTrue(imuAt(samples(-20, 0), ImuBatch{}));
+  expectTrue(imuAt(ImuBatch{}, samples(0, 20)));
 }
 
 TEST(ImuAt, SamplesFartherAwayDoNotCount) {
@@ -57,9 +57,10 @@ TEST(ImuAt, VibrationsAverageOut) {
 }
 
 TEST(ImuAt, TooFewSamplesTellNothing) {
-  EXPECT_FALSE(imuAt({}, {}));
-  EXPECT_FALSE(imuAt(samples(-1, 0), {}));
-  EXPECT_FALSE(imuAt(samples(0, 0), {}));
+  EXPECT_FALSE(imuAt(ImuBatch{}, ImuBatch{}));
+  EXPECT_FALSE(imuAt(nullptr, nullptr));
+  EXPECT_FALSE(imuAt(samples(-1, 0), ImuBatch{}));
+  EXPECT_FALSE(imuAt(samples(0, 0), ImuBatch{}));
 }
 
 TEST(MotionChange, IsWithoutBiasAndGravity) {

@@ -6,11 +6,9 @@
 namespace lintel {
 
 std::optional<ImuAt> imuAtKeyframe(const std::vector<RetiredKeyframe>& keyframes, std::size_t k, double reach_s) {
-  static const ImuBatch kNone;
-  const ImuBatch& before = keyframes[k].imu ? keyframes[k].imu->samples() : kNone;
   const Preintegration* next = k + 1 < keyframes.size() ? keyframes[k + 1].imu.get() : nullptr;
   const bool goes_on = next && !next->samples().empty() && next->samples().front().t_ns == keyframes[k].t_ns;
-  return imuAt(before, goes_on ? next->samples() : kNone, reach_s);
+  return imuAt(keyframes[k].imu.get(), goes_on ? next : nullptr, reach_s);
 }
 
 FrameMotion motionOf(const std::vector<RetiredKeyframe>& keyframes, std::size_t k) {

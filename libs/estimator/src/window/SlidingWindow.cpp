@@ -66,10 +66,7 @@ void SlidingWindow::addFrame(WindowFrame frame, const FrameTracks& tracks) {
 }
 
 std::optional<ImuAt> SlidingWindow::imuAtFrame(std::size_t i, double reach_s) const {
-  static const ImuBatch kNone;
-  const Preintegration *before = frames[i].imu.get(),
-                       *after = i + 1 < frames.size() ? frames[i + 1].imu.get() : nullptr;
-  return imuAt(before ? before->samples() : kNone, after ? after->samples() : kNone, reach_s);
+  return imuAt(frames[i].imu.get(), i + 1 < frames.size() ? frames[i + 1].imu.get() : nullptr, reach_s);
 }
 
 void SlidingWindow::relinearise() {

@@ -26,6 +26,9 @@ constexpr double kImuReach_s = 0.0105;
 /// line that fits their angular rates best, and the mean of their specific forces. Nothing where there are too few.
 std::optional<ImuAt> imuAt(const ImuBatch& before, const ImuBatch& after, double reach_s = kImuReach_s);
 
+/// The same between two intervals; null for one that is not known.
+std::optional<ImuAt> imuAt(const Preintegration* before, const Preintegration* after, double reach_s = kImuReach_s);
+
 /// How a body's motion changes at one time, body axes.
 struct MotionChange {
   Eigen::Vector3d acceleration_b = Eigen::Vector3d::Zero();          ///< of the body in the world [m/s^2]
