@@ -19,6 +19,7 @@
 #include "solver/WindowSolver.h"
 #include "window/FailureDetection.h"
 #include "window/KeyframeSelection.h"
+#include "window/NoiseScale.h"
 #include "window/OutlierRejection.h"
 #include "window/RestDetection.h"
 #include "window/RollingShutter.h"
@@ -57,7 +58,9 @@ class Estimator::Impl {
         noise_(rig.imu_noise, params_.factors),
         rest_(params_),
         initializer_(params_, rig.T_b_c),
-        window_(rig) {}
+        window_(rig),
+        point_noise_(params_.factors.track_freedom),
+        line_noise_(params_.factors.track_freedom) {}
 
   WindowUpdate process(const FrameTracks& tracks, const ImuBatch& imu);
   WindowUpdate finish();
@@ -101,6 +104,7 @@ class Estimator::Impl {
   PlacementCheck placement_;
   ScaleDrift scale_drift_;
   StampJitter stamp_jitter_;
+  NoiseScale point_noise_, line_noise_;
   std::optional<WindowCovariance> sigma_;                        // of the last solve
   StateCovariance newest_covariance_ = StateCovariance::Zero();  // of the newest window frame
   bool tracking_ = false;
@@ -305,11 +309,16 @@ void Estimator::Impl::solve(WindowUpdate& update) {
   if (params_.degeneracy.lines == "constrain") groupParallelLines(window_, params_);
   window_.stamp_sigma_s = stampJitter_s();
   countStampJitter(window_.stamp_sigma_s, window_);
+  window_.noise_scales = {point_noise_.scale(), line_noise_.scale()};
   WindowFactors factors(window_, params_.factors);
   factors.addAll(params_, rig_.T_b_c);
   const SolveLimits limits{params_.max_iterations, kSettledMove, true};
   scale_drift_.beforeSolve(window_);
   SolveSummary solved = solveWindow(window_, factors.factors(), params_.calibration, limits);
+  if (params_.factors.find_track_noise) {
+    point_noise_.add(solved.levels.points);
+    line_noise_.add(solved.levels.lines);
+  }
   update.iterations = solved.iterations;
   sigma_.emplace(std::move(solved.information));
   scale_drift_.afterSolve(window_);
@@ -399,6 +408,7 @@ void Estimator::Impl::clearWindow(bool keep_calibration) {
   } else {
     window_.extrinsics = toBlock(rig_.T_b_c);
     window_.correction.setZero();
+    point_noise_ = line_noise_ = NoiseScale(params_.factors.track_freedom);
   }
   window_.relinearise();  // what comes in is linearised about what is kept
   placement_ = {};

@@ -189,6 +189,7 @@ class LandmarkComparison {
 
 EstimatorParams paramsOf(const ConsistencySetting& setting) {
   EstimatorParams params;
+  params.factors.find_track_noise = false;  // it is told
   params.factors.point_sigma_px = params.factors.point_noise_px = kPixelSigma;
   params.factors.line_sigma_px = params.factors.line_noise_px = 1;  // of what the observations say of themselves
   params.factors.point_walk_px = params.factors.line_walk_px = 0;

@@ -22,6 +22,7 @@ inline EstimatorParams forWhiteNoise() {
   params.factors.point_noise_px = params.factors.point_sigma_px;
   params.factors.line_noise_px = params.factors.line_sigma_px;
   params.factors.point_walk_px = params.factors.line_walk_px = 0;
+  params.factors.find_track_noise = false;
   return params;
 }
 

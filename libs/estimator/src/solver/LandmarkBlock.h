@@ -2,6 +2,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <optional>
 #include <vector>
 
 #include "lintel/factors/ImageFactor.h"
@@ -54,6 +55,7 @@ struct LandmarkBlock {
                                                   ///< correction and of its direction; the same times inverse_root
   std::vector<RowRun> runs;                       ///< where these rows lie in CameraEquations
   Whitener whitener;                              ///< empty before the first linearisation
+  std::optional<double> mean_square;              ///< of the residuals then, of a track that is long enough
   std::vector<Eigen::Index> camera_places;        ///< in CameraEquations
 
   /// What does not depend on the blocks' values, when all sightings and the tie are there.
@@ -76,6 +78,7 @@ struct LandmarkBlock {
  private:
   using PlusJacobian = Eigen::Matrix<double, kSize, T, Eigen::RowMajor>;
   void chooseNoise(LandmarkScratch& scratch);
+  std::optional<double> meanSquare(const std::vector<Eigen::Vector2d>& whitened) const;
   double whitenedCost(const std::vector<Eigen::Vector2d>& whitened, std::vector<double>& weights) const;
   Eigen::Index correctionRow() const { return kCameraTangent * static_cast<Eigen::Index>(sightings.size()); }
   void takeRows(const std::vector<CameraView>& views, const double* correction, LandmarkScratch& scratch) const;

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
 #include <utility>
 #include <vector>
 
@@ -65,9 +66,21 @@ void LandmarkBlock<Target>::chooseNoise(LandmarkScratch& scratch) {
     const double cost = whitenedCost(scratch.whitened, scratch.weights) + determinants * candidate.logDeterminant();
     if (whitener.size() == 0 || cost < least) {
       least = cost;
+      mean_square = meanSquare(scratch.whitened);
       whitener = std::move(candidate);
     }
   }
+}
+
+/// For each degree of freedom, of all observations but the last: where the camera was then may be what the IMU says, as
+/// no solve has seen that image. The others' whitened residuals do not depend on the last one.
+template <class Target>
+std::optional<double> LandmarkBlock<Target>::meanSquare(const std::vector<Eigen::Vector2d>& whitened) const {
+  constexpr std::size_t kLeastSightings = 6;  // fewer say little about their noise
+  if (whitened.size() < kLeastSightings) return std::nullopt;
+  double sum = 0;
+  for (std::size_t i = 0; i + 1 < whitened.size(); ++i) sum += whitened[i].squaredNorm();
+  return sum / (2 * static_cast<double>(whitened.size() - 1) - T);
 }
 
 /// The weights are the derivatives of the cost by half the squares of whitened residuals.

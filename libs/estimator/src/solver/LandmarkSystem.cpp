@@ -118,6 +118,17 @@ std::set<BlockKey> LandmarkSystem::states(const SlidingWindow& window) const {
   return states;
 }
 
+ResidualLevels LandmarkSystem::levels() const {
+  ResidualLevels levels;
+  const auto take = [](const auto& blocks, std::vector<double>& to) {
+    for (const auto& block : blocks)
+      if (block.mean_square) to.push_back(*block.mean_square);
+  };
+  take(std::get<0>(landmarks_).blocks, levels.points);
+  take(std::get<1>(landmarks_).blocks, levels.lines);
+  return levels;
+}
+
 double LandmarkSystem::cost(const std::vector<CameraView>& views) const {
   double sum = 0;
   LandmarkScratch scratch;

@@ -12,6 +12,11 @@
 
 namespace lintel {
 
+/// Mean squares of the whitened residuals of tracks, each for a degree of freedom.
+struct ResidualLevels {
+  std::vector<double> points, lines;
+};
+
 /// The residuals of a window's images in the cameras' tangent spaces, and the elimination of points and lines.
 ///
 /// How a factor is linearised follows from what it is:
@@ -35,6 +40,9 @@ class LandmarkSystem {
 
   /// The body's motion at a camera's image, as its factors say.
   const FrameMotion& motion(int camera) const { return motions_[static_cast<std::size_t>(camera)]; }
+
+  /// LandmarkBlock::mean_square of all that have it, after a linearisation.
+  ResidualLevels levels() const;
 
   double cost(const std::vector<CameraView>& views) const;
   double linearise(const std::vector<CameraView>& views);

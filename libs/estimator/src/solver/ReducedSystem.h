@@ -47,6 +47,9 @@ class ReducedSystem {
   /// Takes residuals and Jacobians at the present values; returns their cost.
   double linearise();
 
+  /// Of the landmarks' residuals at the first linearisation.
+  ResidualLevels levels() const { return landmarks_.levels(); }
+
   /// The states' equations with landmarks eliminated as they are; directions without information stay out.
   NormalEquations eliminate();
 

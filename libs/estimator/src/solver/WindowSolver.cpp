@@ -37,6 +37,7 @@ SolveSummary solveWindow(SlidingWindow& window, const std::vector<Factor>& facto
 
   SolveSummary summary;
   double cost = summary.initial_cost = system.linearise();
+  summary.levels = system.levels();
   double damping = kFirstDamping, raise = 2;
   while (summary.iterations < limits.max_iterations && damping < kMostDamping) {
     ++summary.iterations;

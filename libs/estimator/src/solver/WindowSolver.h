@@ -11,6 +11,7 @@ namespace lintel {
 struct SolveSummary {
   int iterations = 0;
   double initial_cost = 0, final_cost = 0;
+  ResidualLevels levels;        ///< before the first step
   NormalEquations information;  ///< of the states, at the last linearisation and without damping; if asked for
 };
 

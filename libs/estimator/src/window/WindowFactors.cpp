@@ -108,8 +108,9 @@ void WindowFactors::addPoints() {
 
 void WindowFactors::addPoint(const PointTrack& track) {
   if (track.sightings.size() < 2) return;  // one sighting says nothing about the cameras
+  const double sigma_px = window_.noise_scales.points * params_.point_sigma_px;
   for (const PointSighting& s : track.sightings) {
-    point_factors_.emplace_back(s.px, window_.camera(), motionOf(s.frame), track.origin_w, params_.point_sigma_px,
+    point_factors_.emplace_back(s.px, window_.camera(), motionOf(s.frame), track.origin_w, sigma_px,
                                 window_.rowTime(s.seen_px));
     factors_.push_back({&point_factors_.back(),
                         &point_loss_,
@@ -134,8 +135,9 @@ void WindowFactors::addLine(const LineTrack& track, const CameraPoses& poses, co
     return;
   }
   if (track.sightings.size() < 2) return;  // one sighting says nothing about the cameras
+  const double scale = window_.noise_scales.lines * params_.line_sigma_px;
   for (const LineSighting& s : track.sightings) {
-    line_factors_.emplace_back(s.start, s.end, motionOf(s.frame), track.origin_w, params_.line_sigma_px * s.sigma_px);
+    line_factors_.emplace_back(s.start, s.end, motionOf(s.frame), track.origin_w, scale * s.sigma_px);
     factors_.push_back({&line_factors_.back(),
                         &line_loss_,
                         {{BlockKey::kPose, s.frame},

@@ -3,7 +3,10 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
+#include <cstddef>
+#include <vector>
 
 #include "DenseReference.h"
 #include "TestWindow.h"
@@ -77,6 +80,26 @@ double errorWithSlidingPoints(const FactorParams& params) {
 
 TEST(WindowSolver, TracksThatSlideLoseTheirWeightAsWholes) {
   EXPECT_LT(errorWithSlidingPoints(forWhiteNoise().factors), 0.7 * errorWithSlidingPoints(withoutTrackLoss()));
+}
+
+/// The median of the points' levels in a solved window whose tracks have 0.5 px of noise, which is `told_px`.
+double solvedLevel(double told_px, double scale) {
+  SlidingWindow window = disturbedWindow();
+  window.noise_scales.points = scale;
+  FactorParams params = withoutTrackLoss();
+  params.point_sigma_px = params.point_noise_px = told_px;
+  const WindowFactors factors = everything(window, params);
+  solveWindow(window, factors.factors(), kParams.calibration, {50});
+  std::vector<double> levels = solveWindow(window, factors.factors(), kParams.calibration, {1}).levels.points;
+  EXPECT_GT(levels.size(), 10u);
+  std::nth_element(levels.begin(), levels.begin() + static_cast<std::ptrdiff_t>(levels.size() / 2), levels.end());
+  return levels[levels.size() / 2];
+}
+
+TEST(WindowSolver, LevelsSayByHowMuchTheNoiseIsOff) {
+  EXPECT_NEAR(solvedLevel(0.5, 1), 1, 0.25);
+  EXPECT_NEAR(solvedLevel(0.25, 1), 4, 1);
+  EXPECT_NEAR(solvedLevel(0.25, 2), 1, 0.25) << "the window's scale counts";
 }
 
 TEST(WindowSolver, WhatIsNotRefinedIsAConstantAndTheRestIsNot) {

@@ -17,7 +17,8 @@ struct FactorParams {
   double line_noise_px = 0.3;     ///< as with points; both scale LineObservation::sigma_px
   double line_walk_px = 0.4;
   double line_loss_width = 1.5;  ///< Cauchy width, in standard deviations
-  double track_freedom = 4;  ///< of a track's own variance about these: the smaller, the more tracks differ (TrackLoss)
+  bool find_track_noise = true;  ///< both by the recording's own residuals, these its start (NoiseScale)
+  double track_freedom = 2;  ///< of a track's own variance about these: the smaller, the more tracks differ (TrackLoss)
   double gyro_noise_scale = 1.0;   ///< of the rig's noise density; 1: checked against the samples (NoiseMeter)
   double accel_noise_scale = 1.0;  ///< the same; other than 1: the rig's density is taken as given
   double gyro_walk_scale = 1.0;
@@ -33,7 +34,8 @@ struct FactorParams {
     field("line_noise_px", line_noise_px, Range{0.01, 100});
     field("line_walk_px", line_walk_px, Range{0, 100});
     field("line_loss_width", line_loss_width, Range{0.1, 1000000});
-    field("track_freedom", track_freedom, Range{0.1, 1000000});
+    field("find_track_noise", find_track_noise);
+    field("track_freedom", track_freedom, Range{0.5, 1000000});
     field("gyro_noise_scale", gyro_noise_scale, Range{0.001, 10000});
     field("accel_noise_scale", accel_noise_scale, Range{0.001, 10000});
     field("gyro_walk_scale", gyro_walk_scale, Range{0.001, 10000});

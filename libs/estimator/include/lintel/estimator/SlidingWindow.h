@@ -132,6 +132,11 @@ struct WorldDrift {
   Eigen::Matrix4d covariance = Eigen::Matrix4d::Zero();  ///< of c, with the oldest frame's position and yaw held
 };
 
+/// The errors of tracks in units of the configured noise (FactorParams).
+struct NoiseScales {
+  double points = 1, lines = 1;
+};
+
 /// The states and tracks of the sliding window; what the other classes of this room work on, without any algorithm.
 class SlidingWindow {
  public:
@@ -141,6 +146,7 @@ class SlidingWindow {
   std::map<TrackId, PointTrack> points;  ///< ordered: the same sums in the same order every run
   std::map<TrackId, LineTrack> lines;
   double stamp_sigma_s = 0;  ///< by how much the images' stamps are off, as far as it is known (StampJitter.h)
+  NoiseScales noise_scales;  ///< as far as they are known (NoiseScale.h)
   std::map<std::uint64_t, SharedDirection> directions;  ///< of groups of parallel lines; ids from 1
   std::uint64_t next_direction = 1;
   PoseBlock extrinsics;  ///< T_b_c
