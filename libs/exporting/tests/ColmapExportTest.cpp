@@ -61,6 +61,23 @@ TEST_F(ColmapExport, TextIsAsComputedByHand) {
             "1 0.5 0.5 -0.5 0.5 0 0 0 1 1000.png\n100 50 5\n2 0.5 0.5 -0.5 0.5 -1 0 0 1 2000.png\n75 52 5\n");
 }
 
+TEST_F(ColmapExport, CamerasAreWhereTheyWereWhenTheImageWasTaken) {
+  LineMap moving = map();
+  moving.time_offset_s = -0.01, moving.keyframes[1].offset_change_s = -0.02;
+  for (MapKeyframe& keyframe : moving.keyframes) keyframe.v_w_b = {0, -1, 0};  // 1 m/s to the right
+  exportMap(moving, in("model.colmap"));
+  std::string images = content(in("model.colmap/images.bin"));
+  const auto centre_x = [&](std::size_t at) {  // with these axes -t_x is the centre's x
+    double t;
+    std::memcpy(&t, images.data() + at, sizeof t);
+    return -t;
+  };
+  const std::size_t first = 8 + 4 + 4 * 8;
+  EXPECT_NEAR(centre_x(first), -0.01, 1e-12);
+  const std::size_t image_bytes = 4 + 7 * 8 + 4 + std::strlen("1000.png") + 1 + 8 + 24;
+  EXPECT_NEAR(centre_x(first + image_bytes), 1 - 0.03, 1e-12);
+}
+
 TEST_F(ColmapExport, BinaryHoldsTheSame) {
   exportMap(map(), in("model.colmap"));
   std::string cameras = content(in("model.colmap/cameras.bin")), images = content(in("model.colmap/images.bin")),

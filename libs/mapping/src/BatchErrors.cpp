@@ -47,10 +47,14 @@ class ViewStatistics {
 
 std::vector<CameraErrors> BatchProblem::drawErrors() {
   std::vector<double*> blocks;
-  std::vector<int> tiles{kPoseTangent + kCorrectionSize};
+  std::vector<int> tiles{kPoseTangent};
   for (std::size_t i = 0; i < points_.size(); ++i) blocks.push_back(at(points_at_ + i * kPointSize));
   for (std::size_t i = 0; i < lines_.size(); ++i) blocks.push_back(at(lines_at_ + i * kLineSize));
-  blocks.insert(blocks.end(), {at(extrinsics_at_), at(correction_at_)});
+  blocks.push_back(at(extrinsics_at_));
+  for (std::size_t i = 0; i < stretches(); ++i) {
+    blocks.push_back(at(correctionOf(i)));
+    tiles.push_back(kCorrectionSize);
+  }
   for (std::size_t g = 0; g < groups_.size(); ++g) {
     blocks.push_back(at(directions_at_ + g * kDirectionSize));
     tiles.push_back(kDirectionTangent);
@@ -82,7 +86,8 @@ std::vector<CameraErrors> BatchProblem::cameraErrors(const Eigen::MatrixXd& draw
   for (const RetiredKeyframe& keyframe : material_.keyframes)
     T_w_b.push_back(keyframe.T_w_b), t_ns.push_back(keyframe.t_ns);
   BodyErrors body(T_w_b, t_ns);
-  Eigen::Index row = kPoseTangent + kCorrectionSize + static_cast<Eigen::Index>(groups_.size()) * kDirectionTangent;
+  Eigen::Index row = kPoseTangent + static_cast<Eigen::Index>(stretches()) * kCorrectionSize +
+                     static_cast<Eigen::Index>(groups_.size()) * kDirectionTangent;
   for (const std::size_t k : anchors) {
     body.set(k, drawn.middleRows<kPoseTangent>(row));
     row += kPoseTangent + kMotionSize;

@@ -75,14 +75,15 @@ template <class Target>
 void BatchProblem::addView(ImageFactor<Target>& factor, ceres::LossFunction& loss, std::size_t keyframe,
                            double* landmark) {
   if (isAnchor(keyframe)) {
-    problem_->AddResidualBlock(&factor, &loss, at(poseAt(keyframe)), at(extrinsics_at_), at(correction_at_), landmark);
+    problem_->AddResidualBlock(&factor, &loss, at(poseAt(keyframe)), at(extrinsics_at_), at(correctionAt(keyframe)),
+                               landmark);
     return;
   }
   carried_views_.push_back({&factor, &loss, keyframe, landmark});
   const auto [a, b] = anchors_[keyframe];
   own_factors_.push_back(std::make_unique<CarriedView<Target>>(factor, carriage(keyframe)));
-  problem_->AddResidualBlock(own_factors_.back().get(), &loss, at(poseAt(a)), at(extrinsics_at_), at(correction_at_),
-                             landmark, at(poseAt(b)));
+  problem_->AddResidualBlock(own_factors_.back().get(), &loss, at(poseAt(a)), at(extrinsics_at_),
+                             at(correctionAt(keyframe)), landmark, at(poseAt(b)));
 }
 
 /// A joined point needs few views beside those of its visits: each couples keyframes that are far apart in time.

@@ -24,12 +24,7 @@ StateManifold* directionManifold() {
   return &manifold;
 }
 
-CorrectionBlock correctionOf(const Camera& camera, const Camera& calibrated, double time_offset_s) {
-  CorrectionBlock c;
-  c << camera.fx - calibrated.fx, camera.fy - calibrated.fy, camera.cx - calibrated.cx, camera.cy - calibrated.cy,
-      camera.lens[0] - calibrated.lens[0], camera.lens[1] - calibrated.lens[1], 0, time_offset_s;
-  return c;
-}
+constexpr double kOffsetLossWidth = 1;  // standard deviations: exposure times change at once, clocks slowly
 
 class IterationCallback : public ceres::IterationCallback {
  public:
@@ -61,17 +56,19 @@ StateManifold* BatchProblem::poseManifold() {
 BatchProblem::BatchProblem(const Rig& calibrated, const EstimatorParams& estimator, MapMaterial& material,
                            const std::vector<Anchors>& anchors, const std::vector<bool>& use_point,
                            const std::vector<bool>& use_line, std::size_t most_views,
-                           const std::vector<ParallelLines>& groups)
+                           const std::vector<ParallelLines>& groups, double offset_walk_s)
     : calibrated_(calibrated),
       estimator_(estimator),
       material_(material),
       anchors_(anchors),
       most_views_(most_views),
+      offset_walk_s_(offset_walk_s),
       groups_(groups),
       point_loss_(estimator.factors.point_loss_width),
       line_loss_(estimator.factors.line_loss_width),
       calibration_loss_(estimator.calibration.loss_width),
       structural_loss_(estimator.degeneracy.structural_loss_width),
+      offset_loss_(kOffsetLossWidth),
       problem_(std::make_unique<ceres::Problem>(problemOptions())) {
   for (std::size_t i = 0; i < material.points.size(); ++i)
     if (use_point[i]) points_.push_back(i);
@@ -83,6 +80,7 @@ BatchProblem::BatchProblem(const Rig& calibrated, const EstimatorParams& estimat
     keyframe_places_[id] = static_cast<std::int64_t>(k);
     motions_.push_back(motionOf(material_.keyframes, k));
   }
+  findStretches();
   placeBlocks();
   addPriors();
   addImu();
@@ -100,7 +98,7 @@ void BatchProblem::placeBlocks() {
   lines_at_ = points_.size() * kPointSize;
   extrinsics_at_ = lines_at_ + lines_.size() * kLineSize;
   correction_at_ = extrinsics_at_ + kPoseSize;
-  directions_at_ = correction_at_ + kCorrectionSize;
+  directions_at_ = correction_at_ + stretches() * kCorrectionSize;
   keyframes_at_ = directions_at_ + groups_.size() * kDirectionSize;
   values_.resize(keyframes_at_ + material_.keyframes.size() * (kPoseSize + kMotionSize));
 
@@ -120,9 +118,7 @@ void BatchProblem::placeBlocks() {
   }
   Eigen::Map<PoseBlock>(at(extrinsics_at_)) = toBlock(material_.rig.T_b_c);
   problem_->AddParameterBlock(at(extrinsics_at_), kPoseSize, poseManifold());
-  Eigen::Map<CorrectionBlock>(at(correction_at_)) =
-      correctionOf(material_.rig.camera, calibrated_.camera, material_.time_offset_s);
-  problem_->AddParameterBlock(at(correction_at_), kCorrectionSize);
+  placeCorrections();
   for (std::size_t g = 0; g < groups_.size(); ++g) {
     Eigen::Map<DirectionBlock>(at(directions_at_ + g * kDirectionSize)) = groups_[g].direction_w;
     problem_->AddParameterBlock(at(directions_at_ + g * kDirectionSize), kDirectionSize, directionManifold());
@@ -148,6 +144,7 @@ void BatchProblem::addPriors() {
   };
   addParts(makeExtrinsicsPriors(estimator_.calibration, calibrated_.T_b_c), extrinsics_at_);
   addParts(makeCorrectionPriors(estimator_.calibration), correction_at_);
+  addCorrectionChanges();
   for (std::size_t k = 0; k < material_.keyframes.size(); ++k) {
     const RetiredKeyframe& keyframe = material_.keyframes[k];
     if (!isAnchor(k)) continue;
@@ -170,7 +167,7 @@ BatchProblem::Summary BatchProblem::solve(int max_iterations, double tolerance, 
   for (std::size_t i = 0; i < points_.size(); ++i) ordering->AddElementToGroup(at(points_at_ + i * kPointSize), 0);
   for (std::size_t i = 0; i < lines_.size(); ++i) ordering->AddElementToGroup(at(lines_at_ + i * kLineSize), 0);
   ordering->AddElementToGroup(at(extrinsics_at_), 1);
-  ordering->AddElementToGroup(at(correction_at_), 1);
+  for (std::size_t i = 0; i < stretches(); ++i) ordering->AddElementToGroup(at(correctionOf(i)), 1);
   for (std::size_t g = 0; g < groups_.size(); ++g)
     ordering->AddElementToGroup(at(directions_at_ + g * kDirectionSize), 1);
   for (std::size_t k = 0; k < material_.keyframes.size(); ++k) {
@@ -204,7 +201,7 @@ void BatchProblem::writeBack() {
   material_.rig.T_b_c = poseFromBlock(at(extrinsics_at_));
   material_.rig.T_b_c.q.normalize();
   material_.rig.camera = correctedCamera(calibrated_.camera, at(correction_at_));
-  material_.time_offset_s = at(correction_at_)[kTimeOffsetAt];
+  writeBackOffsets();
   for (std::size_t k = 0; k < material_.keyframes.size(); ++k) {
     RetiredKeyframe& keyframe = material_.keyframes[k];
     keyframe.T_w_b = poseFromBlock(at(poseAt(k)));

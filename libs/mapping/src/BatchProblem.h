@@ -35,9 +35,11 @@ class BatchProblem {
  public:
   /// `use_point`, `use_line`: which landmarks take part, by place in the material; `most_views` of each have residuals.
   /// `groups` of parallel lines share a direction each. Keyframes that are not anchors are carried by theirs.
+  /// `offset_walk_s`: by how much the offset between the clocks changes within a second, 0 for never.
   BatchProblem(const Rig& calibrated, const EstimatorParams& estimator, MapMaterial& material,
                const std::vector<Anchors>& anchors, const std::vector<bool>& use_point,
-               const std::vector<bool>& use_line, std::size_t most_views, const std::vector<ParallelLines>& groups);
+               const std::vector<bool>& use_line, std::size_t most_views, const std::vector<ParallelLines>& groups,
+               double offset_walk_s);
 
   struct Summary {
     bool usable = false;
@@ -62,6 +64,10 @@ class BatchProblem {
  private:
   double* at(std::size_t offset) { return values_.data() + offset; }
   void placeBlocks();
+  void findStretches();
+  void placeCorrections();
+  void addCorrectionChanges();
+  void writeBackOffsets();
   void addPriors();
   bool beginsWorld(FrameId keyframe) const;
   void countStamps(std::size_t from, std::size_t to, Preintegration& imu) const;
@@ -80,6 +86,9 @@ class BatchProblem {
   void settle();
   Eigen::Vector3d originOf(FrameId keyframe) const;
 
+  std::size_t stretches() const { return stretches_.empty() ? 1 : stretches_.back() + 1; }
+  std::size_t correctionOf(std::size_t stretch) const { return correction_at_ + stretch * kCorrectionSize; }
+  std::size_t correctionAt(std::size_t k) const { return correctionOf(stretches_[k]); }
   std::size_t poseAt(std::size_t k) const { return keyframes_at_ + k * (kPoseSize + kMotionSize); }
   std::size_t motionAt(std::size_t k) const { return poseAt(k) + kPoseSize; }
 
@@ -99,15 +108,17 @@ class BatchProblem {
   MapMaterial& material_;
   const std::vector<Anchors> anchors_;
   std::size_t most_views_;
+  double offset_walk_s_;
   std::vector<std::size_t> points_, lines_;  // places in the material
   std::vector<ParallelLines> groups_;
   std::vector<std::int64_t> keyframe_places_;  // by id
+  std::vector<std::size_t> stretches_;         // of time, by place: each has a correction block of its own
   std::vector<FrameMotion> motions_;           // by place
   std::vector<double> values_;
   std::size_t points_at_ = 0, lines_at_ = 0, extrinsics_at_ = 0, correction_at_ = 0, directions_at_ = 0,
               keyframes_at_ = 0;
 
-  ceres::CauchyLoss point_loss_, line_loss_, calibration_loss_, structural_loss_;
+  ceres::CauchyLoss point_loss_, line_loss_, calibration_loss_, structural_loss_, offset_loss_;
   std::deque<PointFactor> point_factors_;
   std::deque<LineFactor> line_factors_;
   std::vector<std::pair<std::size_t, std::unique_ptr<ImuFactor>>> imu_factors_;  // with the later keyframe's place

@@ -87,13 +87,15 @@ bool fitsWorse(const RefinementReport& report) {
   return report.held_out_after_px > 1.02 * report.held_out_before_px + 0.01 && report.held_out_growth > 2;
 }
 
-/// How far keyframes moved; every run about its own first keyframe, which is held.
+/// How far keyframes and clocks moved; every run about its own first keyframe, which is held.
 void measureChange(const MapMaterial& before, const MapMaterial& after, RefinementReport& report, double& travelled_m) {
   travelled_m = 0;
   for (std::size_t k = 0; k < before.keyframes.size(); ++k) {
     const Pose &T0 = before.keyframes[k].T_w_b, &T1 = after.keyframes[k].T_w_b;
     if (k > 0 && before.keyframes[k].imu) travelled_m += (T0.p - before.keyframes[k - 1].T_w_b.p).norm();
     report.moved_m = std::max(report.moved_m, (T1.p - T0.p).norm());
+    report.least_offset_s = std::min(report.least_offset_s, after.keyframes[k].offset_change_s);
+    report.most_offset_s = std::max(report.most_offset_s, after.keyframes[k].offset_change_s);
     report.turned_rad = std::max(report.turned_rad, logRotation(T0.q.conjugate() * T1.q).norm());
   }
 }
@@ -199,7 +201,7 @@ std::vector<CameraErrors> BatchRefinement::errorsOf(MapMaterial& material) const
   constexpr double kInterval_s = 0.5;  // errors of poses change slowly: those between follow from their neighbours
   const auto [use_point, use_line] = usedOf(material);
   BatchProblem problem(calibrated_, estimator_, material, anchorsOf(material.keyframes, kInterval_s), use_point,
-                       use_line, static_cast<std::size_t>(std::max(0, params_.max_views)), {});
+                       use_line, static_cast<std::size_t>(std::max(0, params_.max_views)), {}, params_.offset_walk_s);
   return problem.drawErrors();
 }
 
@@ -239,7 +241,7 @@ RefinementReport BatchRefinement::adjust(MapMaterial& material, const Refinement
     const std::vector<Anchors> anchors = last ? fewAnchors(material.keyframes, params_.most_keyframes)
                                               : anchorsOf(material.keyframes, params_.keyframe_interval_s);
     BatchProblem problem(calibrated_, estimator_, material, anchors, use_point, use_line,
-                         static_cast<std::size_t>(std::max(0, params_.max_views)), groups);
+                         static_cast<std::size_t>(std::max(0, params_.max_views)), groups, params_.offset_walk_s);
     if (round == 0) report.imu_before = problem.imuError();
     // landmarks are chosen and classified anew after every round but the last: those need not converge
     const auto summary = problem.solve(params_.max_iterations, last ? 2e-3 : 1e-2,

@@ -42,7 +42,7 @@ void BatchProblem::settle() {
     problem.SetParameterBlockConstant(block);
   };
   hold(at(extrinsics_at_), kPoseSize);
-  hold(at(correction_at_), kCorrectionSize);
+  for (std::size_t i = 0; i < stretches(); ++i) hold(at(correctionOf(i)), kCorrectionSize);
   for (std::size_t i = 0; i < points_.size(); ++i) hold(at(points_at_ + i * kPointSize), kPointSize);
   for (std::size_t i = 0; i < lines_.size(); ++i) hold(at(lines_at_ + i * kLineSize), kLineSize);
   for (std::size_t k = 0; k < anchors_.size(); ++k) {
@@ -56,7 +56,7 @@ void BatchProblem::settle() {
     problem.AddResidualBlock(factor.get(), nullptr, at(poseAt(k - 1)), at(motionAt(k - 1)), at(poseAt(k)),
                              at(motionAt(k)));
   for (const CarriedResidual& r : carried_views_)
-    problem.AddResidualBlock(r.factor, r.loss, at(poseAt(r.keyframe)), at(extrinsics_at_), at(correction_at_),
+    problem.AddResidualBlock(r.factor, r.loss, at(poseAt(r.keyframe)), at(extrinsics_at_), at(correctionAt(r.keyframe)),
                              r.landmark);
   ceres::Solver::Options options;
   options.linear_solver_type = ceres::SPARSE_NORMAL_CHOLESKY;

@@ -83,6 +83,8 @@ std::string whatIsWrong(const LineMap& map) {
     if (line.group < -1 || (groups > 0 && line.group >= groups)) return "has a line in a group that does not exist";
   if (!isRig(map.rig)) return "has a camera whose numbers are out of range";
   if (!(std::abs(map.time_offset_s) < kLongestOffset_s)) return "has clocks that are an hour apart";
+  for (const MapKeyframe& keyframe : map.keyframes)
+    if (!(std::abs(keyframe.offset_change_s) < kLongestOffset_s)) return "has clocks that change by an hour";
   const std::string times = wrongTimes(map);
   return times.empty() ? wrongPieces(map) : times;
 }

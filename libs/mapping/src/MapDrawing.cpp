@@ -95,7 +95,8 @@ LineMap drawMap(const MapParams& params, const MapMaterial& material) {
   map.pieces = material.pieces;
   map.camera_errors = material.camera_errors;
   for (const RetiredKeyframe& k : material.keyframes)
-    map.keyframes.push_back({k.id, k.t_ns, k.T_w_b, k.v_w_b, k.bias.gyro, k.bias.accel, k.imu, k.at_rest});
+    map.keyframes.push_back(
+        {k.id, k.t_ns, k.T_w_b, k.v_w_b, k.bias.gyro, k.bias.accel, k.imu, k.at_rest, k.offset_change_s});
   const MapDrawer drawer(params, material);
   for (const PointRecord& record : material.points)
     if (auto point = drawer.draw(record)) map.points.push_back(std::move(*point));

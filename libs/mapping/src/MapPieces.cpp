@@ -74,6 +74,7 @@ AppendedIds appendMaterial(MapMaterial other, MapMaterial& material) {
   material.camera_errors.clear();  // another adjustment finds them
   for (RetiredKeyframe& keyframe : other.keyframes) {
     keyframe.id += ids.keyframes;
+    keyframe.offset_change_s += other.time_offset_s - material.time_offset_s;
     material.keyframes.push_back(std::move(keyframe));
   }
   for (PointRecord& point : other.points) {

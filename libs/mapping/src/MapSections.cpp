@@ -249,6 +249,7 @@ const MapSection kMapSections[kMapSectionCount] = {{"RIG_", encodeRig, decodeRig
                                                    {"PIEC", encodePieces, decodePieces},
                                                    {"IMU_", encodeImu, decodeImu},
                                                    {"STMP", encodeStamps, decodeStamps},
+                                                   {"OFFS", encodeOffsets, decodeOffsets},
                                                    {"VIEW", encodeViews, decodeViews}};
 
 }  // namespace lintel

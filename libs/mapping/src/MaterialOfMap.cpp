@@ -17,13 +17,7 @@ MapMaterial materialOf(const MapParams& params, const LineMap& map) {
   material.trajectory = map.trajectory;
   material.pieces = map.pieces;
   material.camera_errors = map.camera_errors;
-  for (const MapKeyframe& keyframe : map.keyframes) {
-    RetiredKeyframe k;
-    k.id = keyframe.id, k.t_ns = keyframe.t_ns, k.T_w_b = keyframe.T_w_b, k.v_w_b = keyframe.v_w_b;
-    k.bias = {keyframe.bias_gyro, keyframe.bias_accel};
-    k.imu = keyframe.imu, k.at_rest = keyframe.at_rest;
-    material.keyframes.push_back(k);
-  }
+  material.keyframes = retiredKeyframes(map);
   for (const MapPoint& point : map.points) {
     PointRecord record;
     record.id = record.track = point.id, record.known = true;

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Sections of the map file that only merging reads: pieces, the IMU between keyframes and by how
-// much the stamps are off between which it is, what places look like.
+// much the stamps are off between which it is, the clocks' offsets, what places look like.
+#include <algorithm>
+
 #include "MapChecks.h"
 #include "MapSections.h"
 #include "lintel/inertial/Preintegration.h"
@@ -117,6 +119,20 @@ void decodeStamps(ByteReader& in, LineMap& map) {
     imu->setStampNoise(sigma_s, Preintegration::Matrix9::Zero());  // the states count it: BatchProblem
     map.keyframes[k].imu = imu;
   }
+}
+
+/// Of all keyframes, where the offset between the clocks changes.
+void encodeOffsets(const LineMap& map, ByteWriter& out) {
+  if (std::all_of(map.keyframes.begin(), map.keyframes.end(),
+                  [](const MapKeyframe& keyframe) { return keyframe.offset_change_s == 0; }))
+    return;
+  out.u64(map.keyframes.size());
+  for (const MapKeyframe& keyframe : map.keyframes) out.f64(keyframe.offset_change_s);
+}
+
+void decodeOffsets(ByteReader& in, LineMap& map) {
+  if (in.count(8) != map.keyframes.size()) throw ByteReaderError("has not one offset for each keyframe");
+  for (MapKeyframe& keyframe : map.keyframes) keyframe.offset_change_s = in.f64();
 }
 
 void encodeViews(const LineMap& map, ByteWriter& out) {

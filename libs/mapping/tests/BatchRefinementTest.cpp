@@ -121,6 +121,21 @@ class BatchRefinementTest : public testing::Test {
         for (PointView& view : point.views) view.px.x() += 0.6 * static_cast<double>(view.keyframe);
   }
 
+  /// From keyframe `first` on the images' stamps are late: they show the world of so much earlier. Points only.
+  void delayStamps(FrameId first, double late_s) {
+    material_.lines.clear();
+    for (PointRecord& point : material_.points)
+      for (PointView& view : point.views) {
+        if (view.keyframe < first) continue;
+        const InertialTruth& truth = flight_.frames[view.keyframe].truth;
+        const Pose &now = truth.state.T_w_b,
+                   then{now.q * expRotation(-late_s * truth.state.omega_b), now.p - late_s * truth.state.v_w_b};
+        const Eigen::Vector3d& p_w = flight_.points_w[flight_.point_of_track[point.track]];
+        view.px += rig_.camera.project((then * rig_.T_b_c).inverse() * p_w) -
+                   rig_.camera.project((now * rig_.T_b_c).inverse() * p_w);
+      }
+  }
+
   static SimulatedTracks flight_;
   const Rig rig_ = eurocRig();
   EstimatorParams estimator_;
@@ -356,6 +371,34 @@ TEST_F(BatchRefinementTest, ProgressGoesFromNothingToAll) {
   ASSERT_GT(done.size(), 3u);
   EXPECT_TRUE(std::is_sorted(done.begin(), done.end()));
   EXPECT_EQ(done.back(), 1);
+}
+
+TEST_F(BatchRefinementTest, TheOffsetBetweenTheClocksMayJump) {
+  const FrameId middle = flight_.frames.size() / 2;
+  delayStamps(middle, 0.006);
+  estimator_.calibration.refine_time_offset = true;
+  MapMaterial same = material_;
+  const RefinementReport report = refine(material_);
+  EXPECT_TRUE(report.accepted) << report.verdict;
+  EXPECT_NEAR(report.most_offset_s - report.least_offset_s, 0.006, 0.001);
+  for (const RetiredKeyframe& keyframe : material_.keyframes) {
+    const double from_middle_s = 0.05 * (static_cast<double>(keyframe.id) - static_cast<double>(middle));
+    if (std::abs(from_middle_s) < 1) continue;  // the stretch that it jumps in
+    EXPECT_NEAR(material_.time_offset_s + keyframe.offset_change_s, from_middle_s < 0 ? 0 : -0.006, 0.001)
+        << keyframe.id;
+  }
+  params_.offset_walk_s = 0;
+  refine(same);
+  EXPECT_EQ(same.keyframes.front().offset_change_s, 0);
+  EXPECT_LT(error(material_), 0.6 * error(same));
+}
+
+TEST_F(BatchRefinementTest, AnOffsetThatStaysIsFoundTheSameAllTheTime) {
+  delayStamps(0, 0.003);
+  estimator_.calibration.refine_time_offset = true;
+  const RefinementReport report = refine(material_);
+  EXPECT_NEAR(material_.time_offset_s, -0.003, 3e-4);
+  EXPECT_LT(report.most_offset_s - report.least_offset_s, 5e-4);
 }
 
 TEST_F(BatchRefinementTest, AnAbsurdScaleIsRefusedByName) {

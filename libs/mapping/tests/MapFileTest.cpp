@@ -73,6 +73,7 @@ LineMap sampleMap() {
   imu->setStampNoise(0.002, Preintegration::Matrix9::Zero());
   map.keyframes[1].imu = imu;
   map.keyframes[1].at_rest = true;
+  map.keyframes[2].offset_change_s = 0.0055;
   map.views.push_back({1, {17, {{{1.5F, 2.25F}, -1, 0, {1, 2, 3, ~std::uint64_t{0}}}, {{0, 0}, 7, 2, {}}}}});
   return map;
 }
@@ -108,6 +109,8 @@ TEST_F(MapFile, EveryValueReturnsToTheBit) {
   EXPECT_EQ(back.keyframes[2].T_w_b.q.coeffs(), map.keyframes[2].T_w_b.q.coeffs());
   EXPECT_EQ(back.keyframes[2].bias_accel, map.keyframes[2].bias_accel);
   EXPECT_EQ(back.keyframes[4].t_ns, 1403636579763555588);
+  EXPECT_EQ(back.keyframes[1].offset_change_s, 0);
+  EXPECT_EQ(back.keyframes[2].offset_change_s, 0.0055);
   EXPECT_EQ(back.points[3].observations[2].px, map.points[3].observations[2].px);
   EXPECT_EQ(back.points[3].first_t_ns, -5);
   EXPECT_EQ(back.points[3].sigma_distance_m, map.points[3].sigma_distance_m);

@@ -65,7 +65,12 @@ TEST_F(MapPiecesTest, APieceMovesWithAllThatBelongsToIt) {
 
 TEST_F(MapPiecesTest, AnotherRecordingIsPutBehind) {
   MapMaterial whole = material_;
+  whole.time_offset_s = 0.002;
+  material_.time_offset_s = 0.005;
+  material_.keyframes[8].offset_change_s = 0.001;
   const AppendedIds ids = appendMaterial(material_, whole);
+  EXPECT_EQ(whole.keyframes[8].offset_change_s, 0);
+  EXPECT_NEAR(whole.keyframes[17].offset_change_s, 0.004, 1e-15) << "6 ms, of which all have 2";
   EXPECT_EQ(ids.keyframes, 9u);
   EXPECT_EQ(ids.points, 3u);
   EXPECT_EQ(ids.pieces, 2);

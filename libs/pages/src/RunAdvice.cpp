@@ -16,7 +16,8 @@ namespace {
 constexpr double kLateStart_s = 5;
 constexpr int kFewPoints = 25;
 constexpr double kFewPointsShare = 0.05;
-constexpr double kFocalChange = 0.01, kTurned_rad = 0.015, kMoved_m = 0.015, kTimeOffset_s = 0.004;
+constexpr double kFocalChange = 0.01, kTurned_rad = 0.015, kMoved_m = 0.015, kTimeOffset_s = 0.004,
+                 kOffsetChange_s = 0.003;
 constexpr double kLargeGyroBias_rad_s = 0.15, kLargeAccelBias_m_s2 = 0.8;
 constexpr double kDegenerateShare = 0.7;
 
@@ -120,6 +121,15 @@ class Adviser {
     if (std::abs(result_.time_offset_s) > kTimeOffset_s)
       say("Images and IMU differ by " + fixedText(1000 * result_.time_offset_s, 1) +
           " ms. It was taken care of; better is to synchronise them, or to correct the stamps.");
+    const RefinementReport& refined = result_.refinement;
+    if (refined.accepted && refined.most_offset_s - refined.least_offset_s > kOffsetChange_s)
+      say("The offset between images and IMU changed by " +
+          fixedText(1000 * (refined.most_offset_s - refined.least_offset_s), 1) +
+          " ms on the way. Where light is poor a camera exposes longer, and its stamps come later; or a clock drifts. "
+          "The "
+          "refined trajectory and the map take it into account, the causal trajectory does not: fix the exposure time, "
+          "or "
+          "give stamps of the middle of the exposure.");
   }
 
   void biases() {

@@ -74,9 +74,12 @@ TEST(RunAdvice, SaysWhatToDoAboutEachFault) {
   run.result.rig.camera.fx = 480;
   run.result.rig.T_b_c.p.x() = 0.05;
   run.result.time_offset_s = 0.012;
+  run.result.refinement.accepted = true;
+  run.result.refinement.least_offset_s = -0.004, run.result.refinement.most_offset_s = 0.0045;
   run.record.recording_warnings = {"data.csv:7: image missing"};
   const auto advice = run.advice();
-  for (const char* words : {"at 3.20 s: too few points", "Calibrate it again", "5.0 cm", "12.0 ms", "data.csv:7"})
+  for (const char* words :
+       {"at 3.20 s: too few points", "Calibrate it again", "5.0 cm", "12.0 ms", "changed by 8.5 ms", "data.csv:7"})
     EXPECT_THAT(advice, Contains(HasSubstr(words)));
 }
 

@@ -112,7 +112,8 @@ Json refinementJson(const OdometryResult& result) {
           {"held_out_points_px", {r.held_out_before_px, r.held_out_after_px}},
           {"imu_sigmas", {r.imu_before, r.imu_after}},
           {"moved_m", r.moved_m},
-          {"turned_rad", r.turned_rad}};
+          {"turned_rad", r.turned_rad},
+          {"time_offset_change_s", {r.least_offset_s, r.most_offset_s}}};
 }
 
 Json densificationJson(const DensifyReport& d) {

@@ -35,6 +35,9 @@ struct RefinementParams {
   double join_first_px = 30;     ///< two visits of a point may be so far apart in the images in the first round, and
   double join_last_px = 3;       ///< so far in the last one
   double held_out_share = 0.05;  ///< of the points: left out, to check the result with
+  /// By how much the offset between the clocks of camera and IMU changes within a second, standard deviation; it may
+  /// jump by more. 0: never.
+  double offset_walk_s = 3e-4;
   // acceptance
   double max_moved_share = 0.05;  ///< keyframes may move by this share of the way travelled, and
   double max_moved_m = 0.30;      ///< this much more
@@ -59,6 +62,7 @@ struct RefinementParams {
     field("join_first_px", join_first_px, ReferencePixels{0.1, 1000});
     field("join_last_px", join_last_px, ReferencePixels{0.1, 1000});
     field("held_out_share", held_out_share, Range{0, 0.5});
+    field("offset_walk_s", offset_walk_s, Range{0, 1});
     field("max_moved_share", max_moved_share, Range{0, 10});
     field("max_moved_m", max_moved_m, Range{0, 1000});
     field("max_turned_rad", max_turned_rad, Range{0, 3.2});
@@ -78,8 +82,9 @@ struct RefinementReport {
   double held_out_before_px = 0, held_out_after_px = 0;  ///< median error of points left out of it
   std::size_t held_out = 0;                              ///< how many these are
   double held_out_growth = 0;  ///< of their errors, in standard deviations of its mean; 0 with fewer than three
-  double imu_before = 0, imu_after = 0;  ///< RMS, standard deviations
-  double moved_m = 0, turned_rad = 0;    ///< most, of a keyframe
+  double imu_before = 0, imu_after = 0;          ///< RMS, standard deviations
+  double moved_m = 0, turned_rad = 0;            ///< most, of a keyframe
+  double least_offset_s = 0, most_offset_s = 0;  ///< of the keyframes, between the clocks, beside their mean
 };
 
 /// Called at every iteration with the share that is done, in [0, 1]. Its result below 1 says whether to go on: after

@@ -6,6 +6,7 @@
 
 #include "lintel/factors/FrameMotion.h"
 #include "lintel/inertial/ImuAt.h"
+#include "lintel/mapping/LineMap.h"
 #include "lintel/mapping/MapMaterial.h"
 
 namespace lintel {
@@ -14,6 +15,7 @@ namespace lintel {
 class KeyframeCameras {
  public:
   explicit KeyframeCameras(const MapMaterial& material);
+  explicit KeyframeCameras(const LineMap& map);
 
   bool contains(FrameId id) const { return id < places_.size() && places_[id] >= 0; }
   std::size_t placeOf(FrameId id) const { return static_cast<std::size_t>(places_[id]); }  ///< in material.keyframes
@@ -25,11 +27,16 @@ class KeyframeCameras {
   Eigen::Vector3d ray(const Eigen::Vector2d& px) const { return camera_.ray(px); }
 
  private:
+  KeyframeCameras(const Rig& rig, double time_offset_s, const std::vector<RetiredKeyframe>& keyframes);
+
   Camera camera_;
   std::vector<std::int64_t> places_;  // by keyframe id, -1 = none
   std::vector<Pose> T_w_c_;
   std::vector<Eigen::Matrix3d> R_c_w_;
 };
+
+/// The keyframes of a map as those that it was made of.
+std::vector<RetiredKeyframe> retiredKeyframes(const LineMap& map);
 
 /// What the IMU measured at keyframe `k`; nothing where its samples are not known.
 std::optional<ImuAt> imuAtKeyframe(const std::vector<RetiredKeyframe>& keyframes, std::size_t k,

@@ -29,6 +29,7 @@ struct MapKeyframe {
   /// The IMU from the keyframe before; null for the first of a piece, and where the map does not keep it.
   std::shared_ptr<const Preintegration> imu = nullptr;
   bool at_rest = false;
+  double offset_change_s = 0;  ///< what the offset between the clocks has beside LineMap::time_offset_s
 };
 
 /// Where a keyframe saw a point.

@@ -1,0 +1,95 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// BatchProblem: the corrections of the calibration. They are the same all the time but for the offset between the
+// clocks of camera and IMU, so that each stretch of time has a block of its own, held to those beside it.
+#include "BatchProblem.h"
+
+namespace lintel {
+
+namespace {
+
+constexpr double kStretch_s = 1;  // an offset that walks changes by less than its sigma within it
+
+CorrectionBlock correctionFrom(const Camera& camera, const Camera& calibrated, double time_offset_s) {
+  CorrectionBlock c;
+  c << camera.fx - calibrated.fx, camera.fy - calibrated.fy, camera.cx - calibrated.cx, camera.cy - calibrated.cy,
+      camera.lens[0] - calibrated.lens[0], camera.lens[1] - calibrated.lens[1], 0, time_offset_s;
+  return c;
+}
+
+/// By how much two blocks differ, each number in its standard deviations.
+class CorrectionChange final : public ceres::SizedCostFunction<kCorrectionSize, kCorrectionSize, kCorrectionSize> {
+ public:
+  explicit CorrectionChange(const CorrectionBlock& weights) : weights_(weights) {}
+  bool Evaluate(double const* const* parameters, double* residuals, double** jacobians) const override {
+    const Eigen::Map<const CorrectionBlock> before(parameters[0]), after(parameters[1]);
+    Eigen::Map<CorrectionBlock>{residuals} = weights_.cwiseProduct(after - before);
+    for (int i = 0; i < 2; ++i)
+      if (jacobians && jacobians[i])
+        Eigen::Map<Eigen::Matrix<double, kCorrectionSize, kCorrectionSize, Eigen::RowMajor>>{jacobians[i]} =
+            ((i == 0 ? -1 : 1) * weights_).asDiagonal();
+    return true;
+  }
+
+ private:
+  CorrectionBlock weights_;
+};
+
+/// Holds all corrections but the offset: to a thousandth of what is known of them beforehand.
+CorrectionBlock weightsOfTheSame(const CalibrationParams& p) {
+  CorrectionBlock sigmas;
+  sigmas << p.focal_sigma_px, p.focal_sigma_px, p.centre_sigma_px, p.centre_sigma_px, p.distortion_sigma,
+      p.distortion_sigma, p.readout_sigma_s, 1;
+  CorrectionBlock weights = 1e3 * sigmas.cwiseInverse();
+  weights[kTimeOffsetAt] = 0;
+  return weights;
+}
+
+}  // namespace
+
+/// Each begins with an anchor.
+void BatchProblem::findStretches() {
+  const bool changes = offset_walk_s_ > 0 && estimator_.calibration.refine_time_offset;
+  std::int64_t start_ns = 0;
+  for (std::size_t k = 0; k < material_.keyframes.size(); ++k) {
+    const std::int64_t t_ns = material_.keyframes[k].t_ns;
+    const bool begins = k == 0 || (changes && isAnchor(k) && static_cast<double>(t_ns - start_ns) > 1e9 * kStretch_s);
+    if (begins) start_ns = t_ns;
+    stretches_.push_back(k == 0 ? 0 : stretches_.back() + (begins ? 1 : 0));
+  }
+}
+
+void BatchProblem::placeCorrections() {
+  for (std::size_t k = 0; k < stretches_.size(); ++k) {
+    if (k > 0 && stretches_[k] == stretches_[k - 1]) continue;
+    Eigen::Map<CorrectionBlock>(at(correctionAt(k))) = correctionFrom(
+        material_.rig.camera, calibrated_.camera, material_.time_offset_s + material_.keyframes[k].offset_change_s);
+    problem_->AddParameterBlock(at(correctionAt(k)), kCorrectionSize);
+  }
+}
+
+void BatchProblem::addCorrectionChanges() {
+  const CorrectionBlock same = weightsOfTheSame(estimator_.calibration);
+  for (std::size_t k = 1; k < stretches_.size(); ++k) {
+    if (stretches_[k] == stretches_[k - 1]) continue;
+    std::size_t before = k - 1;
+    while (before > 0 && stretches_[before - 1] == stretches_[before]) --before;
+    const double dt_s = 1e-9 * static_cast<double>(material_.keyframes[k].t_ns - material_.keyframes[before].t_ns);
+    CorrectionBlock walk = CorrectionBlock::Zero();
+    walk[kTimeOffsetAt] = 1 / (offset_walk_s_ * std::sqrt(dt_s));
+    own_factors_.push_back(std::make_unique<CorrectionChange>(same));
+    problem_->AddResidualBlock(own_factors_.back().get(), nullptr, at(correctionAt(before)), at(correctionAt(k)));
+    own_factors_.push_back(std::make_unique<CorrectionChange>(walk));
+    problem_->AddResidualBlock(own_factors_.back().get(), &offset_loss_, at(correctionAt(before)), at(correctionAt(k)));
+  }
+}
+
+/// The material's offset is the mean.
+void BatchProblem::writeBackOffsets() {
+  material_.time_offset_s = 0;
+  for (std::size_t i = 0; i < stretches(); ++i)
+    material_.time_offset_s += at(correctionOf(i))[kTimeOffsetAt] / static_cast<double>(stretches());
+  for (std::size_t k = 0; k < material_.keyframes.size(); ++k)
+    material_.keyframes[k].offset_change_s = at(correctionAt(k))[kTimeOffsetAt] - material_.time_offset_s;
+}
+
+}  // namespace lintel
