@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // BatchProblem: the corrections of the calibration. They are the same all the time but for the offset between the
 // clocks of camera and IMU, so that each stretch of time has a block of its own, held to those beside it.
+#include <algorithm>
+#include <cmath>
+
 #include "BatchProblem.h"
 
 namespace lintel {
@@ -46,13 +49,14 @@ CorrectionBlock weightsOfTheSame(const CalibrationParams& p) {
 
 }  // namespace
 
-/// Each begins with an anchor.
+/// Each begins with an anchor, and with every piece another one: that may be of another recording, earlier or later.
 void BatchProblem::findStretches() {
   const bool changes = offset_walk_s_ > 0 && estimator_.calibration.refine_time_offset;
   std::int64_t start_ns = 0;
   for (std::size_t k = 0; k < material_.keyframes.size(); ++k) {
     const std::int64_t t_ns = material_.keyframes[k].t_ns;
-    const bool begins = k == 0 || (changes && isAnchor(k) && static_cast<double>(t_ns - start_ns) > 1e9 * kStretch_s);
+    const bool piece = !material_.keyframes[k].imu, late = static_cast<double>(t_ns - start_ns) > 1e9 * kStretch_s;
+    const bool begins = k == 0 || (changes && isAnchor(k) && (piece || late));
     if (begins) start_ns = t_ns;
     stretches_.push_back(k == 0 ? 0 : stretches_.back() + (begins ? 1 : 0));
   }
@@ -73,7 +77,8 @@ void BatchProblem::addCorrectionChanges() {
     if (stretches_[k] == stretches_[k - 1]) continue;
     std::size_t before = k - 1;
     while (before > 0 && stretches_[before - 1] == stretches_[before]) --before;
-    const double dt_s = 1e-9 * static_cast<double>(material_.keyframes[k].t_ns - material_.keyframes[before].t_ns);
+    const std::int64_t dt_ns = material_.keyframes[k].t_ns - material_.keyframes[before].t_ns;
+    const double dt_s = std::max(kStretch_s, std::abs(1e-9 * static_cast<double>(dt_ns)));
     CorrectionBlock walk = CorrectionBlock::Zero();
     walk[kTimeOffsetAt] = 1 / (offset_walk_s_ * std::sqrt(dt_s));
     own_factors_.push_back(std::make_unique<CorrectionChange>(same));

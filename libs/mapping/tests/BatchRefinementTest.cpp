@@ -393,6 +393,23 @@ TEST_F(BatchRefinementTest, TheOffsetBetweenTheClocksMayJump) {
   EXPECT_LT(error(material_), 0.6 * error(same));
 }
 
+TEST_F(BatchRefinementTest, ARecordingThatWasMadeEarlierHasAnOffsetOfItsOwn) {
+  MapMaterial earlier = material_;
+  earlier.lines.clear();
+  delayStamps(0, 0.003);
+  estimator_.calibration.refine_time_offset = true;
+  for (RetiredKeyframe& keyframe : earlier.keyframes) keyframe.t_ns -= 3'600'000'000'000;
+  material_.pieces = separatePieces(material_), earlier.pieces = separatePieces(earlier);
+  earlier.time_offset_s = 0.004;
+  const std::size_t first = material_.keyframes.size();
+  material_.trajectory.clear(), earlier.trajectory.clear();
+  appendMaterial(earlier, material_);
+  const RefinementReport report = refine(material_);
+  EXPECT_TRUE(report.accepted) << report.verdict;
+  for (const std::size_t k : {std::size_t{0}, first - 1, first, material_.keyframes.size() - 1})
+    EXPECT_NEAR(material_.time_offset_s + material_.keyframes[k].offset_change_s, k < first ? -0.003 : 0, 6e-4) << k;
+}
+
 TEST_F(BatchRefinementTest, AnOffsetThatStaysIsFoundTheSameAllTheTime) {
   delayStamps(0, 0.003);
   estimator_.calibration.refine_time_offset = true;
