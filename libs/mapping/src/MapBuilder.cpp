@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "MapFitting.h"
+#include "StartPoses.h"
 
 namespace lintel {
 
@@ -73,6 +74,7 @@ MapBuilder::MapBuilder(const Rig& rig, const MapParams& params) : params_(params
 }
 
 void MapBuilder::add(const WindowUpdate& update) {
+  if (frames_ns_.empty() || update.t_ns > frames_ns_.back()) frames_ns_.push_back(update.t_ns);
   if (update.startWasWrong()) return withdrawStart();
   material_.trajectory.insert(material_.trajectory.end(), update.replaced.begin(), update.replaced.end());
   if (update.hasPose()) material_.trajectory.emplace_back(update.t_ns, update.T_w_b);
@@ -106,6 +108,7 @@ MapMaterial MapBuilder::material() const {
   keepKeyframesOnly(ids, material.lines);
   orderById(material.points);
   orderById(material.lines);
+  addPosesOfStarts(frames_ns_, material);
   material.pieces = separatePieces(material);
   return material;
 }

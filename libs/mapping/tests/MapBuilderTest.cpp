@@ -4,9 +4,14 @@
 #include <gtest/gtest.h>
 #include <malloc.h>
 
+#include <cmath>
+#include <memory>
+#include <optional>
 #include <set>
 
+#include "lintel/geometry/Frames.h"
 #include "lintel/geometry/Rotation.h"
+#include "lintel/inertial/Preintegration.h"
 
 namespace lintel {
 namespace {
@@ -319,6 +324,53 @@ TEST_F(MapBuilderTest, AnHourWithoutNewsCostsThePosesOnly) {
   constexpr std::size_t kPose = sizeof(std::pair<std::int64_t, Pose>);
   EXPECT_LE(used() - before, 2 * kFrames * kPose + 1'000'000) << "a list grows by doubling";
   EXPECT_EQ(builder.material().trajectory.size(), kFrames);
+}
+
+/// The keyframe at `t` seconds of a flight with an acceleration along x from rest, with the IMU since `imu_from`.
+RetiredKeyframe acceleratedKeyframe(FrameId id, double t, double acceleration, std::optional<double> imu_from) {
+  RetiredKeyframe keyframe;
+  keyframe.id = id;
+  keyframe.t_ns = std::llround(1e9 * t);
+  keyframe.T_w_b.p = {0.5 * acceleration * t * t, 0, 0};
+  keyframe.v_w_b = {acceleration * t, 0, 0};
+  if (!imu_from) return keyframe;
+  ImuBatch samples;
+  for (std::int64_t t_ns = std::llround(1e9 * *imu_from); t_ns <= keyframe.t_ns; t_ns += 5'000'000)
+    samples.push_back({t_ns, {0, 0, 0}, {acceleration, 0, kGravity}});
+  const auto imu = std::make_shared<Preintegration>(ImuBias{}, ImuNoise{});
+  imu->append(samples);
+  keyframe.imu = imu;
+  return keyframe;
+}
+
+TEST_F(MapBuilderTest, FramesThatAStartWasMadeOfHavePoses) {
+  constexpr double kAcceleration = 2;
+  MapBuilder builder(rig_, params_);
+  const auto add = [&](int tenth, bool pose, const std::vector<RetiredKeyframe>& keyframes = {}) {
+    WindowUpdate update;
+    update.t_ns = tenth * 100'000'000LL;
+    update.status = pose ? EstimatorStatus::kTracking : EstimatorStatus::kInitializing;
+    update.T_w_b.p = {0.5 * kAcceleration * 0.01 * tenth * tenth, 0, 0};
+    update.keyframes = keyframes;
+    builder.add(update);
+  };
+  // two starts: of the frames from 0.1 to 0.5 s, and of those from 0.8 to 1.1 s, with the IMU interrupted between them
+  for (int tenth = 0; tenth < 5; ++tenth) add(tenth, false);
+  add(5, true,
+      {acceleratedKeyframe(1, 0.1, kAcceleration, {}), acceleratedKeyframe(2, 0.3, kAcceleration, 0.1),
+       acceleratedKeyframe(3, 0.5, kAcceleration, 0.3)});
+  for (int tenth = 6; tenth < 11; ++tenth) add(tenth, false);
+  add(11, true, {acceleratedKeyframe(4, 0.8, kAcceleration, {}), acceleratedKeyframe(5, 1.1, kAcceleration, 0.8)});
+  const MapMaterial material = builder.material();
+  std::vector<int> tenths;
+  for (const auto& [t_ns, T_w_b] : material.trajectory) {
+    tenths.push_back(static_cast<int>(t_ns / 100'000'000));
+    const double t = 1e-9 * static_cast<double>(t_ns);
+    EXPECT_LT((T_w_b.p - Eigen::Vector3d(0.5 * kAcceleration * t * t, 0, 0)).norm(), 1e-9) << t;
+  }
+  EXPECT_EQ(tenths, (std::vector<int>{1, 2, 3, 4, 5, 8, 9, 10, 11})) << "before a start and between them there is none";
+  ASSERT_EQ(material.pieces.size(), 2u);
+  EXPECT_EQ(material.pieces[1].first_pose, 5u);
 }
 
 TEST_F(MapBuilderTest, KeepsTheTrajectoryAndTheLastRig) {

@@ -103,6 +103,7 @@ Json refinementJson(const OdometryResult& result) {
   const RefinementReport& r = result.refinement;
   return {{"accepted", r.accepted},
           {"verdict", r.verdict.empty() ? "left out" : r.verdict},
+          {"poses", result.refined_trajectory.size()},
           {"iterations", r.iterations},
           {"residuals", r.residuals},
           {"points", r.points},

@@ -331,6 +331,9 @@ class LintelVio {
       out_ << "     " << result.lines_beside
            << " more lines run beside better seen ones and were left out (map.spacing.min_m, 0 keeps them)\n";
     if (!result.refinement.verdict.empty()) out_ << result.refinement.verdict << "\n";
+    if (result.refined_trajectory.size() > s.frames_with_pose)
+      out_ << "     its trajectory has " << result.refined_trajectory.size() << " poses: the frames that "
+           << (result.map.pieces.size() > 1 ? "starts were" : "the start was") << " made of have one as well\n";
     const fs::path folder(output_);
     out_ << "written: " << (folder / "trajectory.tum").string() << ", trajectory_covariance.csv"
          << (result.refinement.accepted ? ", trajectory_refined.tum" : "")

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <cstdint>
 #include <set>
+#include <vector>
 
 #include "lintel/estimator/WindowUpdate.h"
 #include "lintel/mapping/LineMap.h"
@@ -22,7 +24,7 @@ class MapBuilder {
   /// Calibration that the map's poses belong to.
   void setCalibration(const Rig& rig, double time_offset_s = 0);
 
-  /// All that was added, ordered, nothing left out.
+  /// All that was added, ordered, nothing left out; frames that a start was made of have poses as well.
   MapMaterial material() const;
 
   /// The map of everything added so far: prepareMaterial(), then drawMap().
@@ -38,6 +40,7 @@ class MapBuilder {
 
   MapParams params_;
   MapMaterial material_;
+  std::vector<std::int64_t> frames_ns_;  ///< of all frames, with a pose or not
   Extent settled_;
 };
 
