@@ -3,10 +3,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <deque>
 #include <optional>
 
 #include "ParamsCheck.h"
+#include "StartMemory.h"
 #include "initialisation/Initializer.h"
 #include "landmarks/LineDegeneracy.h"
 #include "landmarks/LineTriangulation.h"
@@ -77,13 +77,16 @@ class Estimator::Impl {
   void addFrame(const FrameTracks& tracks);
   void remember(const FrameTracks& tracks);
   void initialise(WindowUpdate& update);
-  void replaceWrongStart(WindowUpdate& update);
+  void replaceWrongStart(const std::vector<StateCovariance>& covariances, WindowUpdate& update);
+  void addPosesBetween(const WindowFrame& from, const WindowFrame& to, const StateCovariance& covariance,
+                       WindowUpdate& update) const;
   void track(WindowUpdate& update);
   void solve(WindowUpdate& update);
   double stampJitter_s() const { return params_.calibration.find_stamp_jitter ? stamp_jitter_.sigma_s() : 0; }
   void shrink(bool second_newest_is_keyframe, WindowUpdate& update);
   void dropOldest(WindowUpdate& update);
   void dropSecondNewest(WindowUpdate& update);
+  bool mayStartAnew() const { return !tracking_ || onTrial(); }
   bool onTrial() const { return tracking_ && tracks_since_start_ <= kTrialFrames; }
   void fail(Failure failure, const std::string& reason, WindowUpdate& update);
   void handOver(WindowUpdate& update);
@@ -92,7 +95,7 @@ class Estimator::Impl {
   void moveToAnchor();
   void countLandmarks(WindowUpdate& update) const;
   void fillPose(WindowUpdate& update);
-  void startDrift(WindowUpdate& update);
+  std::vector<StateCovariance> startDrift(const WindowUpdate& update);
   std::vector<const WindowFrame*> replacingFrames(const WindowUpdate& update) const;
 
   Rig rig_;
@@ -115,13 +118,8 @@ class Estimator::Impl {
   int blind_frames_ = 0, tracks_since_start_ = 0;
   Pose anchor_T_w_b_;  // where a new start continues
 
-  /// A window frame as it came in.
-  struct Input {
-    FrameTracks tracks;
-    ImuBatch imu;  // since the window frame before
-  };
-  std::deque<Input> memory_;  // of the last frames, for a start that replaces a wrong one
-  int frames_to_wait_ = 0;    // before it is tried
+  StartMemory memory_;
+  int frames_to_wait_ = 0;  // before a start is tried
   std::string waits_for_;
   std::int64_t first_pose_ns_ = 0;                // of the present start
   std::optional<std::int64_t> replaces_from_ns_;  // first pose of the wrong start that is to be replaced
@@ -136,6 +134,7 @@ WindowUpdate Estimator::Impl::process(const FrameTracks& tracks, const ImuBatch&
   if (!imu_ok && !window_.frames.empty()) {
     fail(Failure::kInterrupted, "the IMU has a gap", update);
   } else if (!enters) {
+    if (mayStartAnew() && !window_.frames.empty()) memory_.addSkipped(tracks.t_ns, window_.frames.front().t_ns);
     update = skipFrame(tracks);
   } else {
     remember(tracks);
@@ -173,9 +172,8 @@ WindowUpdate Estimator::Impl::skipFrame(const FrameTracks& tracks) {
 
 /// While a start may still prove wrong, what another one would be made of.
 void Estimator::Impl::remember(const FrameTracks& tracks) {
-  if (tracking_ && !onTrial()) return memory_.clear();
-  memory_.push_back({tracks, pending_imu_});
-  if (static_cast<int>(memory_.size()) > std::min(kTrialFrames, params_.initializer.max_frames)) memory_.pop_front();
+  if (!mayStartAnew()) return memory_.clear();
+  memory_.add(tracks, pending_imu_, static_cast<std::size_t>(std::min(kTrialFrames, params_.initializer.max_frames)));
 }
 
 void Estimator::Impl::addFrame(const FrameTracks& tracks) {
@@ -233,8 +231,8 @@ void Estimator::Impl::initialise(WindowUpdate& update) {
   scale_drift_.start(sigma_->relativeScaleSigma(window_));
   update.status = EstimatorStatus::kTracking;
   first_pose_ns_ = update.t_ns;
-  startDrift(update);
-  if (replaces_from_ns_) replaceWrongStart(update);
+  const std::vector<StateCovariance> covariances = startDrift(update);
+  if (replaces_from_ns_) replaceWrongStart(covariances, update);
   while (static_cast<int>(window_.frames.size()) > params_.keyframes) dropOldest(update);
   fillPose(update);
 }
@@ -247,24 +245,41 @@ std::vector<const WindowFrame*> Estimator::Impl::replacingFrames(const WindowUpd
   return frames;
 }
 
-/// Covariances are relative to the first pose from here on.
-void Estimator::Impl::startDrift(WindowUpdate& update) {
+/// Covariances are relative to the first pose from here on. Returns those of the frames that replace others.
+std::vector<StateCovariance> Estimator::Impl::startDrift(const WindowUpdate& update) {
   const WindowFrame& newest = window_.frames.back();
-  const auto replacing = replacingFrames(update);
-  if (replacing.empty()) {
-    newest_covariance_ = sigma_->start(window_, newest.id);
-    return;
-  }
-  for (const WindowFrame* frame : replacing)
-    update.replaced_covariances.push_back(frame == replacing.front() ? sigma_->start(window_, frame->id)
-                                                                     : sigma_->of(window_, *frame));
-  newest_covariance_ = sigma_->of(window_, newest);
+  std::vector<StateCovariance> covariances;
+  for (const WindowFrame* frame : replacingFrames(update))
+    covariances.push_back(covariances.empty() ? sigma_->start(window_, frame->id) : sigma_->of(window_, *frame));
+  newest_covariance_ = covariances.empty() ? sigma_->start(window_, newest.id) : sigma_->of(window_, newest);
+  return covariances;
 }
 
-void Estimator::Impl::replaceWrongStart(WindowUpdate& update) {
-  for (const WindowFrame* frame : replacingFrames(update)) update.replaced.emplace_back(frame->t_ns, frame->T_w_b());
+void Estimator::Impl::replaceWrongStart(const std::vector<StateCovariance>& covariances, WindowUpdate& update) {
+  const auto frames = replacingFrames(update);
+  for (std::size_t i = 0; i < frames.size(); ++i) {
+    update.replaced.emplace_back(frames[i]->t_ns, frames[i]->T_w_b());
+    update.replaced_covariances.push_back(covariances[i]);
+    addPosesBetween(*frames[i], i + 1 < frames.size() ? *frames[i + 1] : window_.frames.back(), covariances[i], update);
+  }
   if (!update.replaced.empty()) first_pose_ns_ = update.replaced.front().first;
   replaces_from_ns_.reset();
+}
+
+/// Of the frames between two window frames, as the IMU carries the first one's state to them.
+void Estimator::Impl::addPosesBetween(const WindowFrame& from, const WindowFrame& to, const StateCovariance& covariance,
+                                      WindowUpdate& update) const {
+  if (!to.imu) return;
+  const InertialState state = stateOf(from);
+  Preintegration imu(state.bias, to.imu->noise(), rig_.gravity_m_s2);
+  auto next = to.imu->samples().begin();
+  for (const std::int64_t t_ns : memory_.skippedBetween(from.t_ns, to.t_ns)) {
+    const auto first = next;
+    while (next != to.imu->samples().end() && next->t_ns <= t_ns) ++next;
+    imu.append(ImuBatch(first, next));
+    update.replaced.emplace_back(t_ns, propagated(state, imu).T_w_b);
+    update.replaced_covariances.push_back(propagatedCovariance(state, imu, covariance));
+  }
 }
 
 void Estimator::Impl::moveToAnchor() {
@@ -416,7 +431,7 @@ void Estimator::Impl::clearWindow(bool keep_calibration) {
 }
 
 void Estimator::Impl::fillFromMemory() {
-  for (const Input& input : memory_) {
+  for (const StartMemory::Input& input : memory_.inputs()) {
     pending_imu_ = input.imu;
     addFrame(input.tracks);
   }

@@ -73,7 +73,8 @@ struct WindowUpdate {
   StateCovariance covariance = StateCovariance::Zero();
   std::optional<ImuBias> bias_sigma;  ///< standard deviations, about once a second
   Failure failure = Failure::kNone;   ///< with kLost
-  /// With the first pose of a start that replaces a wrong one: (t_ns, T_w_b) of frames before, since the wrong start.
+  /// With the first pose of a start that replaces a wrong one: (t_ns, T_w_b) of the frames before, since the wrong
+  /// start or as far as the new one reaches back.
   std::vector<std::pair<std::int64_t, Pose>> replaced;
   std::vector<StateCovariance> replaced_covariances;  ///< of these
   std::vector<RetiredKeyframe> keyframes;
