@@ -11,6 +11,16 @@ namespace lintel {
 namespace {
 
 constexpr double kStretch_s = 1;  // an offset that walks changes by less than its sigma within it
+constexpr double kStretches =
+    200;  // at most, of a long flight: all blocks together are dense where it stays in one place
+
+/// How long the IMU leads from keyframe to keyframe.
+double duration_s(const std::vector<RetiredKeyframe>& keyframes) {
+  double sum_s = 0;
+  for (const RetiredKeyframe& keyframe : keyframes)
+    if (keyframe.imu) sum_s += keyframe.imu->dt_s();
+  return sum_s;
+}
 
 CorrectionBlock correctionFrom(const Camera& camera, const Camera& calibrated, double time_offset_s) {
   CorrectionBlock c;
@@ -52,10 +62,11 @@ CorrectionBlock weightsOfTheSame(const CalibrationParams& p) {
 /// Each begins with an anchor, and with every piece another one: that may be of another recording, earlier or later.
 void BatchProblem::findStretches() {
   const bool changes = offset_walk_s_ > 0 && estimator_.calibration.refine_time_offset;
+  const double stretch_s = std::max(kStretch_s, duration_s(material_.keyframes) / kStretches);
   std::int64_t start_ns = 0;
   for (std::size_t k = 0; k < material_.keyframes.size(); ++k) {
     const std::int64_t t_ns = material_.keyframes[k].t_ns;
-    const bool piece = !material_.keyframes[k].imu, late = static_cast<double>(t_ns - start_ns) > 1e9 * kStretch_s;
+    const bool piece = !material_.keyframes[k].imu, late = static_cast<double>(t_ns - start_ns) > 1e9 * stretch_s;
     const bool begins = k == 0 || (changes && isAnchor(k) && (piece || late));
     if (begins) start_ns = t_ns;
     stretches_.push_back(k == 0 ? 0 : stretches_.back() + (begins ? 1 : 0));

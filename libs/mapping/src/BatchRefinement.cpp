@@ -200,8 +200,9 @@ BatchRefinement::Used BatchRefinement::usedOf(const MapMaterial& material) const
 std::vector<CameraErrors> BatchRefinement::errorsOf(MapMaterial& material) const {
   constexpr double kInterval_s = 0.5;  // errors of poses change slowly: those between follow from their neighbours
   const auto [use_point, use_line] = usedOf(material);
-  BatchProblem problem(calibrated_, estimator_, material, anchorsOf(material.keyframes, kInterval_s), use_point,
-                       use_line, static_cast<std::size_t>(std::max(0, params_.max_views)), {}, params_.offset_walk_s);
+  BatchProblem problem(calibrated_, estimator_, material,
+                       fewAnchors(material.keyframes, params_.most_keyframes, kInterval_s), use_point, use_line,
+                       static_cast<std::size_t>(std::max(0, params_.max_views)), {}, params_.offset_walk_s);
   return problem.drawErrors();
 }
 
@@ -238,8 +239,8 @@ RefinementReport BatchRefinement::adjust(MapMaterial& material, const Refinement
     const auto [use_point, use_line] = usedOf(material);
     std::vector<ParallelLines> groups;
     if (round > 0 && params_.groups) groups = parallelLines(map_, material);
-    const std::vector<Anchors> anchors = last ? fewAnchors(material.keyframes, params_.most_keyframes)
-                                              : anchorsOf(material.keyframes, params_.keyframe_interval_s);
+    const std::vector<Anchors> anchors =
+        fewAnchors(material.keyframes, params_.most_keyframes, last ? 0 : params_.keyframe_interval_s);
     BatchProblem problem(calibrated_, estimator_, material, anchors, use_point, use_line,
                          static_cast<std::size_t>(std::max(0, params_.max_views)), groups, params_.offset_walk_s);
     if (round == 0) report.imu_before = problem.imuError();

@@ -40,9 +40,8 @@ std::vector<Anchors> anchorsOf(const std::vector<RetiredKeyframe>& keyframes, do
   return anchors;
 }
 
-std::vector<Anchors> fewAnchors(const std::vector<RetiredKeyframe>& keyframes, int most) {
-  constexpr double kLongest_s = 1;  // between anchors: beyond it the IMU does not carry a pose well enough
-  double interval_s = 0;
+std::vector<Anchors> fewAnchors(const std::vector<RetiredKeyframe>& keyframes, int most, double interval_s) {
+  constexpr double kLongest_s = 10;  // between anchors: beyond it the odometry does not carry a pose well enough
   while (most > 0 && interval_s < kLongest_s &&
          anchorPlaces(keyframes, interval_s).size() > static_cast<std::size_t>(most))
     interval_s += 0.1;

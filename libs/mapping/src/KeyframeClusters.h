@@ -17,7 +17,8 @@ struct Anchors {
 /// first and the last of each run are anchors. 0 s: all are.
 std::vector<Anchors> anchorsOf(const std::vector<RetiredKeyframe>& keyframes, double interval_s);
 
-/// The same with the smallest interval, in steps of 0.1 s, that gives at most `most` anchors; 0: any number.
-std::vector<Anchors> fewAnchors(const std::vector<RetiredKeyframe>& keyframes, int most);
+/// The same with the smallest interval from `interval_s` on, in steps of 0.1 s up to 10 s, that gives at most `most`
+/// anchors; 0: any number.
+std::vector<Anchors> fewAnchors(const std::vector<RetiredKeyframe>& keyframes, int most, double interval_s = 0);
 
 }  // namespace lintel

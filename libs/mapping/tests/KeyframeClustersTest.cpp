@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include <set>
+
 namespace lintel {
 namespace {
 
@@ -48,6 +50,9 @@ TEST(KeyframeClusters, NothingHangsOnAnotherRun) {
 TEST(KeyframeClusters, ALongFlightHasFewerAnchors) {
   EXPECT_EQ(mains(fewAnchors(keyframes(7), 7)), (std::vector<std::size_t>{0, 1, 2, 3, 4, 5, 6}));
   EXPECT_EQ(mains(fewAnchors(keyframes(7), 4)), (std::vector<std::size_t>{0, 0, 2, 2, 4, 4, 6}));
+  EXPECT_EQ(mains(fewAnchors(keyframes(7), 4, 0.3)), (std::vector<std::size_t>{0, 0, 3, 3, 3, 6, 6}));
+  const std::vector<std::size_t> half_a_minute = mains(fewAnchors(keyframes(300), 10));
+  EXPECT_LE(std::set<std::size_t>(half_a_minute.begin(), half_a_minute.end()).size(), 10u);
 }
 
 TEST(KeyframeClusters, NoKeyframesNoAnchors) { EXPECT_TRUE(anchorsOf({}, 0.3).empty()); }

@@ -20,7 +20,7 @@ struct RefinementParams {
   /// In all rounds but the last keyframes are adjusted that follow each other by so much; those between are carried by
   /// them, with all their views. 0: all are adjusted.
   double keyframe_interval_s = 0.3;
-  int most_keyframes = 400;  ///< adjusted in the last round: of a long flight every second or third; 0: all
+  int most_keyframes = 400;  ///< adjusted in a round: in the last one of a long flight every second or third; 0: all
   bool lines = true;         ///< lines have residuals too; off: they follow the poses
   bool groups = true;        ///< lines of a parallel group share a direction, as far as the group is parallel
   /// Standard deviations of points and lines against the window's, which are larger than its residuals because what it
