@@ -271,14 +271,11 @@ void Estimator::Impl::addPosesBetween(const WindowFrame& from, const WindowFrame
                                       WindowUpdate& update) const {
   if (!to.imu) return;
   const InertialState state = stateOf(from);
-  Preintegration imu(state.bias, to.imu->noise(), rig_.gravity_m_s2);
-  auto next = to.imu->samples().begin();
-  for (const std::int64_t t_ns : memory_.skippedBetween(from.t_ns, to.t_ns)) {
-    const auto first = next;
-    while (next != to.imu->samples().end() && next->t_ns <= t_ns) ++next;
-    imu.append(ImuBatch(first, next));
-    update.replaced.emplace_back(t_ns, propagated(state, imu).T_w_b);
-    update.replaced_covariances.push_back(propagatedCovariance(state, imu, covariance));
+  const std::vector<std::int64_t> times_ns = memory_.skippedBetween(from.t_ns, to.t_ns);
+  const std::vector<Preintegration> imu = integratedTo(state.bias, *to.imu, times_ns);
+  for (std::size_t i = 0; i < times_ns.size(); ++i) {
+    update.replaced.emplace_back(times_ns[i], propagated(state, imu[i]).T_w_b);
+    update.replaced_covariances.push_back(propagatedCovariance(state, imu[i], covariance));
   }
 }
 

@@ -18,6 +18,29 @@ InertialState propagated(const InertialState& from, const Preintegration& imu) {
   return to;
 }
 
+std::vector<Preintegration> integratedTo(const ImuBias& bias, const Preintegration& whole,
+                                         const std::vector<std::int64_t>& times_ns) {
+  Preintegration imu(bias, whole.noise(), whole.gravity_m_s2());
+  std::vector<Preintegration> integrated;
+  std::size_t next = 0;
+  const ImuBatch& samples = whole.samples();
+  for (const std::int64_t t_ns : times_ns) {
+    ImuBatch piece;
+    while (next < samples.size() && samples[next].t_ns <= t_ns) piece.push_back(samples[next++]);
+    imu.append(piece);
+    integrated.push_back(imu);
+    if (next == samples.size() || next == 0 || samples[next - 1].t_ns == t_ns) continue;
+    const ImuSample &a = samples[next - 1], &b = samples[next];
+    const double s = static_cast<double>(t_ns - a.t_ns) / static_cast<double>(b.t_ns - a.t_ns);
+    ImuSample between = a;
+    between.t_ns = t_ns;
+    between.gyro = a.gyro + s * (b.gyro - a.gyro);
+    between.accel = a.accel + s * (b.accel - a.accel);
+    integrated.back().append({between});
+  }
+  return integrated;
+}
+
 StateCovariance propagatedCovariance(const InertialState& from, const Preintegration& imu,
                                      const StateCovariance& covariance) {
   constexpr int kP = 0, kR = 3, kV = 6, kBias = 9;  // in the state; Preintegration has another order

@@ -47,6 +47,24 @@ TEST(Propagation, ABodyFallsAsFastAsGravitySays) {
   EXPECT_NEAR(propagated({}, imu).v_w_b.z(), -1.62, 1e-9);
 }
 
+TEST(Propagation, IntegratesToTimesOnAndBetweenSamples) {
+  // falling, sampled every 0.1 s from 2 s on; the acceleration that is felt grows by 1 m/s^3
+  Preintegration whole({}, {});
+  ImuBatch samples;
+  for (std::int64_t i = 0; i <= 10; ++i)
+    samples.push_back({2'000'000'000 + 100'000'000 * i, {0, 0, 0}, {0.1 * static_cast<double>(i), 0, 0}});
+  whole.append(samples);
+  const auto imu = integratedTo({}, whole, {2'000'000'000, 2'300'000'000, 2'350'000'000, 3'000'000'000});
+  ASSERT_EQ(imu.size(), 4u);
+  const double times_s[] = {0, 0.3, 0.35, 1};
+  for (std::size_t i = 0; i < 4; ++i) {
+    const InertialState to = propagated({}, imu[i]);
+    EXPECT_NEAR(imu[i].dt_s(), times_s[i], 1e-12);
+    EXPECT_NEAR(to.v_w_b.x(), 0.5 * times_s[i] * times_s[i], 1e-9) << "the trapezoid rule is exact here";
+    EXPECT_NEAR(to.v_w_b.z(), gravityW().z() * times_s[i], 1e-9);
+  }
+}
+
 TEST(Propagation, MisfitIsMeasuredByTheCovariance) {
   const Preintegration imu = constantReadings(Eigen::Vector3d::Zero(), -gravityW(), {});
   const InertialState from, there = propagated(from, imu);

@@ -2,6 +2,8 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <cstdint>
+#include <vector>
 
 #include "lintel/geometry/Pose.h"
 #include "lintel/inertial/Preintegration.h"
@@ -18,6 +20,11 @@ struct InertialState {
 /// The state at the end of a pre-integrated interval that starts in state `from`, by the samples alone
 /// [Forster2017, eq. 26]; the biases stay.
 InertialState propagated(const InertialState& from, const Preintegration& imu);
+
+/// Pre-integrations from the first of the samples of `whole` to each of `times_ns`, ascending and within the samples,
+/// with the noise of `whole`. A time between two samples gets one interpolated.
+std::vector<Preintegration> integratedTo(const ImuBias& bias, const Preintegration& whole,
+                                         const std::vector<std::int64_t>& times_ns);
 
 /// Covariance of a state's error: position [m] (world axes), rotation [rad] (R <- R Exp(dtheta)), velocity [m/s], gyro
 /// bias [rad/s], accelerometer bias [m/s^2]; three numbers each.
