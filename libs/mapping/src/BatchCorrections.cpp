@@ -11,8 +11,7 @@ namespace lintel {
 namespace {
 
 constexpr double kStretch_s = 1;  // an offset that walks changes by less than its sigma within it
-constexpr double kStretches =
-    200;  // at most, of a long flight: all blocks together are dense where it stays in one place
+constexpr double kAnchors = 2;    // in a stretch, of a long flight: where it stays in one place all blocks are dense
 
 /// How long the IMU leads from keyframe to keyframe.
 double duration_s(const std::vector<RetiredKeyframe>& keyframes) {
@@ -62,7 +61,7 @@ CorrectionBlock weightsOfTheSame(const CalibrationParams& p) {
 /// Each begins with an anchor, and with every piece another one: that may be of another recording, earlier or later.
 void BatchProblem::findStretches() {
   const bool changes = offset_walk_s_ > 0 && estimator_.calibration.refine_time_offset;
-  const double stretch_s = std::max(kStretch_s, duration_s(material_.keyframes) / kStretches);
+  const double stretch_s = std::max(kStretch_s, kAnchors * duration_s(material_.keyframes) / anchorCount());
   std::int64_t start_ns = 0;
   for (std::size_t k = 0; k < material_.keyframes.size(); ++k) {
     const std::int64_t t_ns = material_.keyframes[k].t_ns;

@@ -5,6 +5,7 @@
 
 #include "BatchProblem.h"
 #include "CarriedView.h"
+#include "Evidence.h"
 #include "lintel/geometry/Rotation.h"
 #include "lintel/mapping/KeyframeCameras.h"
 
@@ -57,16 +58,14 @@ class FlatDirectionFactor final : public ceres::SizedCostFunction<2, kLineSize, 
   Eigen::Matrix<double, 2, 3> across_;
 };
 
-/// At most `most` of the views that agree, spread evenly over all: a landmark couples every two keyframes that have a
-/// view here, and the hundredth view of a track adds little information.
+/// At most `most` of the views that agree: a landmark couples every two keyframes that have a view here.
 template <class View>
 std::vector<const View*> spreadViews(const std::vector<View>& views, std::size_t most) {
-  std::vector<const View*> inliers, result;
+  std::vector<const View*> inliers;
   for (const View& v : views)
     if (v.inlier) inliers.push_back(&v);
-  if (most < 2 || inliers.size() <= most) return inliers;
-  for (std::size_t i = 0; i < most; ++i) result.push_back(inliers[i * (inliers.size() - 1) / (most - 1)]);
-  return result;
+  thinOut(inliers, most);
+  return inliers;
 }
 
 }  // namespace

@@ -24,16 +24,20 @@ StateManifold* directionManifold() {
   return &manifold;
 }
 
+constexpr double kPoseCoordinates = 6;
 constexpr double kOffsetLossWidth = 1;  // standard deviations: exposure times change at once, clocks slowly
 
 class IterationCallback : public ceres::IterationCallback {
  public:
-  explicit IterationCallback(const std::function<bool(int)>& goOn) : goOn_(goOn) {}
+  IterationCallback(double least_gain, const std::function<bool(int)>& goOn) : least_gain_(least_gain), goOn_(goOn) {}
   ceres::CallbackReturnType operator()(const ceres::IterationSummary& summary) override {
-    return goOn_(summary.iteration) ? ceres::SOLVER_CONTINUE : ceres::SOLVER_TERMINATE_SUCCESSFULLY;
+    const double gain = summary.cost_change;
+    const bool ends = summary.iteration > 0 && summary.step_is_successful && gain >= 0 && gain < least_gain_;
+    return goOn_(summary.iteration) && !ends ? ceres::SOLVER_CONTINUE : ceres::SOLVER_TERMINATE_SUCCESSFULLY;
   }
 
  private:
+  double least_gain_;
   const std::function<bool(int)>& goOn_;
 };
 
@@ -162,10 +166,11 @@ bool BatchProblem::beginsWorld(FrameId keyframe) const {
   return material_.pieces[piece].world == static_cast<int>(piece);
 }
 
-BatchProblem::Summary BatchProblem::solve(int max_iterations, double tolerance, const std::function<bool(int)>& goOn) {
-  auto ordering = std::make_shared<ceres::ParameterBlockOrdering>();
-  for (std::size_t i = 0; i < points_.size(); ++i) ordering->AddElementToGroup(at(points_at_ + i * kPointSize), 0);
-  for (std::size_t i = 0; i < lines_.size(); ++i) ordering->AddElementToGroup(at(lines_at_ + i * kLineSize), 0);
+BatchProblem::Summary BatchProblem::solve(int max_iterations, double least_gain, const std::function<bool(int)>& goOn) {
+  auto landmarks = std::make_shared<ceres::ParameterBlockOrdering>();
+  for (std::size_t i = 0; i < points_.size(); ++i) landmarks->AddElementToGroup(at(points_at_ + i * kPointSize), 0);
+  for (std::size_t i = 0; i < lines_.size(); ++i) landmarks->AddElementToGroup(at(lines_at_ + i * kLineSize), 0);
+  auto ordering = std::make_shared<ceres::ParameterBlockOrdering>(*landmarks);
   ordering->AddElementToGroup(at(extrinsics_at_), 1);
   for (std::size_t i = 0; i < stretches(); ++i) ordering->AddElementToGroup(at(correctionOf(i)), 1);
   for (std::size_t g = 0; g < groups_.size(); ++g)
@@ -179,7 +184,7 @@ BatchProblem::Summary BatchProblem::solve(int max_iterations, double tolerance, 
   options.linear_solver_type = ceres::SPARSE_SCHUR;
   options.linear_solver_ordering = ordering;
   options.max_num_iterations = max_iterations;
-  options.function_tolerance = tolerance;
+  options.function_tolerance = 1e-9;
   options.num_threads = 1;
   // The scale hardly shows in a single residual: damping relative to those would hold it back for many iterations.
   options.initial_trust_region_radius = 1e8;
@@ -187,8 +192,12 @@ BatchProblem::Summary BatchProblem::solve(int max_iterations, double tolerance, 
   // A landmark with a wrong sighting may raise the cost of a step, and a refused step leaves weakly observed
   // directions such as the scale unchanged: a few steps may raise the cost if it then falls below its former value.
   options.use_nonmonotonic_steps = true;
+  // Every landmark is estimated anew after every step of all: what the steps of a few would raise the cost by, when
+  // their views hardly determine them, else makes many a step of all be refused.
+  options.use_inner_iterations = true;
+  options.inner_iteration_ordering = landmarks;
   options.logging_type = ceres::SILENT;
-  IterationCallback callback(goOn);
+  IterationCallback callback(kPoseCoordinates * least_gain * anchorCount(), goOn);
   options.callbacks.push_back(&callback);
   ceres::Solver::Summary summary;
   ceres::Solve(options, problem_.get(), &summary);

@@ -48,9 +48,11 @@ class BatchProblem {
     double cost_before = 0, cost_after = 0;
   };
   /// Solves for anchors, calibration and landmarks; then for the keyframes between the anchors, all else held.
-  /// Ends when an iteration lowers the cost by less than `tolerance` of it, or when `goOn`, called after every
-  /// iteration with their number, says so.
-  Summary solve(int max_iterations, double tolerance, const std::function<bool(int)>& goOn);
+  /// Ends when an iteration lowers the cost by less than `least_gain` for each coordinate of the anchors' poses, or
+  /// when `goOn`, called after every iteration with their number, says so. A cost is half of a chi-square: a gain of
+  /// 1/2 moves a coordinate by a standard deviation. Compared with the cost itself, drift between visits of one place
+  /// would not count on a long flight: it costs little beside the views of all landmarks.
+  Summary solve(int max_iterations, double least_gain, const std::function<bool(int)>& goOn);
 
   /// Keyframes and calibration as solved, into the material. Landmarks are estimated anew by MapFitting.
   void writeBack();
@@ -81,6 +83,7 @@ class BatchProblem {
   std::vector<CameraErrors> cameraErrors(const Eigen::MatrixXd& drawn, const std::vector<std::size_t>& anchors) const;
   std::vector<double> viewWeights(const ceres::CRSMatrix& jacobian, const std::vector<double>& residuals) const;
   bool isAnchor(std::size_t k) const;
+  double anchorCount() const;
   Carriage carriage(std::size_t k) const;
   void carryAlong();
   void settle();

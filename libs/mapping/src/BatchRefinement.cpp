@@ -20,6 +20,10 @@ namespace lintel {
 
 namespace {
 
+// of the cost, for each coordinate of a pose: smaller steps are not worth an iteration. Landmarks are chosen and
+// classified anew after every round but the last: those need not converge.
+constexpr double kFirstGain = 0.3, kLastGain = 0.04;
+
 /// The groups of the lines that would be drawn now.
 std::vector<ParallelLines> parallelLines(const MapParams& params, const MapMaterial& material) {
   const LineMap map = drawMap(params, material);
@@ -197,12 +201,36 @@ BatchRefinement::Used BatchRefinement::usedOf(const MapMaterial& material) const
   return used;
 }
 
+/// The most views of a landmark that may have residuals, so that all together keep to `most_residuals`. Views of
+/// landmarks grow with the time at a place, what they tell about it hardly.
+std::size_t BatchRefinement::viewsEach(const MapMaterial& material, const Used& used) const {
+  const auto most_views = static_cast<std::size_t>(params_.max_views);
+  if (params_.most_residuals == 0) return most_views;
+  std::vector<std::size_t> views;
+  const auto add = [&](int inliers) {
+    const auto n = static_cast<std::size_t>(inliers);
+    views.push_back(most_views == 0 ? n : std::min(n, most_views));
+  };
+  for (std::size_t i = 0; i < material.points.size(); ++i)
+    if (used.points[i]) add(inliersOf(material.points[i]));
+  for (std::size_t i = 0; i < material.lines.size(); ++i)
+    if (used.lines[i]) add(inliersOf(material.lines[i]));
+  std::sort(views.begin(), views.end());
+  auto left = static_cast<std::size_t>(params_.most_residuals);
+  for (std::size_t n = 0; n < views.size(); ++n) {  // the shortest tracks have all, the others share what is left
+    const std::size_t share = left / (views.size() - n);
+    if (views[n] > share) return std::max(share, static_cast<std::size_t>(params_.min_views));
+    left -= views[n];
+  }
+  return most_views;
+}
+
 std::vector<CameraErrors> BatchRefinement::errorsOf(MapMaterial& material) const {
   constexpr double kInterval_s = 0.5;  // errors of poses change slowly: those between follow from their neighbours
-  const auto [use_point, use_line] = usedOf(material);
+  const Used used = usedOf(material);
   BatchProblem problem(calibrated_, estimator_, material,
-                       fewAnchors(material.keyframes, params_.most_keyframes, kInterval_s), use_point, use_line,
-                       static_cast<std::size_t>(std::max(0, params_.max_views)), {}, params_.offset_walk_s);
+                       fewAnchors(material.keyframes, params_.most_keyframes, kInterval_s), used.points, used.lines,
+                       viewsEach(material, used), {}, params_.offset_walk_s);
   return problem.drawErrors();
 }
 
@@ -236,16 +264,16 @@ RefinementReport BatchRefinement::adjust(MapMaterial& material, const Refinement
     report.joined =
         fitting.join(joins, params_.join_first_px * std::pow(params_.join_last_px / params_.join_first_px, relative),
                      params_.join_sigma_px);
-    const auto [use_point, use_line] = usedOf(material);
+    const Used used = usedOf(material);
     std::vector<ParallelLines> groups;
     if (round > 0 && params_.groups) groups = parallelLines(map_, material);
     const std::vector<Anchors> anchors =
-        fewAnchors(material.keyframes, params_.most_keyframes, last ? 0 : params_.keyframe_interval_s);
-    BatchProblem problem(calibrated_, estimator_, material, anchors, use_point, use_line,
-                         static_cast<std::size_t>(std::max(0, params_.max_views)), groups, params_.offset_walk_s);
+        last ? fewAnchors(material.keyframes, params_.most_keyframes)
+             : fewAnchors(material.keyframes, params_.most_keyframes / 2, params_.keyframe_interval_s);
+    BatchProblem problem(calibrated_, estimator_, material, anchors, used.points, used.lines, viewsEach(material, used),
+                         groups, params_.offset_walk_s);
     if (round == 0) report.imu_before = problem.imuError();
-    // landmarks are chosen and classified anew after every round but the last: those need not converge
-    const auto summary = problem.solve(params_.max_iterations, last ? 2e-3 : 1e-2,
+    const auto summary = problem.solve(params_.max_iterations, last ? kLastGain : kFirstGain,
                                        [&](int iteration) { return goOn(round, iteration); });
     if (report.cancelled) return report;
     if (!summary.usable) {
@@ -258,8 +286,8 @@ RefinementReport BatchRefinement::adjust(MapMaterial& material, const Refinement
     report.imu_after = problem.imuError();
     report.iterations += summary.iterations;
     report.residuals = summary.residuals;
-    report.points = static_cast<std::size_t>(std::count(use_point.begin(), use_point.end(), true));
-    report.lines = static_cast<std::size_t>(std::count(use_line.begin(), use_line.end(), true));
+    report.points = static_cast<std::size_t>(std::count(used.points.begin(), used.points.end(), true));
+    report.lines = static_cast<std::size_t>(std::count(used.lines.begin(), used.lines.end(), true));
     problem.writeBack();
     material.points.resize(separate);
     ++report.rounds;

@@ -8,6 +8,12 @@ namespace lintel {
 
 bool BatchProblem::isAnchor(std::size_t k) const { return anchors_[k].main == k; }
 
+double BatchProblem::anchorCount() const {
+  std::size_t count = 0;
+  for (std::size_t k = 0; k < anchors_.size(); ++k) count += isAnchor(k);
+  return static_cast<double>(count);
+}
+
 /// How the keyframe hangs on its anchors; as the material has them.
 Carriage BatchProblem::carriage(std::size_t k) const {
   const std::vector<RetiredKeyframe>& all = material_.keyframes;

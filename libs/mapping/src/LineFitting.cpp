@@ -31,15 +31,18 @@ struct LineNormal : NormalEquations4 {
 };
 
 std::vector<LineFitView> fitViews(const KeyframeCameras& cameras, const LineRecord& line) {
+  std::vector<const LineView*> fitted;
+  for (const LineView& v : line.views)
+    if (v.inlier && cameras.contains(v.keyframe)) fitted.push_back(&v);
+  thinOut(fitted, kMostFitted);
   std::vector<LineFitView> views;
-  for (const LineView& v : line.views) {
-    if (!v.inlier || !cameras.contains(v.keyframe)) continue;
-    views.push_back({cameras.R_c_w(v.keyframe),
-                     cameras.T_w_c(v.keyframe).p,
-                     {cameras.ray(v.start_px), cameras.ray(v.end_px)},
-                     cameras.camera().meanFocal() / std::max(0.1, static_cast<double>(v.sigma_px)),
+  views.reserve(fitted.size());
+  for (const LineView* v : fitted)
+    views.push_back({cameras.R_c_w(v->keyframe),
+                     cameras.T_w_c(v->keyframe).p,
+                     {cameras.ray(v->start_px), cameras.ray(v->end_px)},
+                     cameras.camera().meanFocal() / std::max(0.1, static_cast<double>(v->sigma_px)),
                      cameras.camera().wide()});
-  }
   return views;
 }
 

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <tuple>
 
 #include "Evidence.h"
@@ -53,6 +54,8 @@ class LineMerger {
         drift_px_(drift_px),
         lines_(lines),
         merged_(lines.size()),
+        refused_(merged_),
+        two_(merged_),
         segments_(lines.size()) {
     for (std::size_t i = 0; i < lines.size(); ++i) segments_[i] = drawn(lines[i]);
   }
@@ -64,6 +67,7 @@ class LineMerger {
       merged += tryMerge(merged_.rootOf(candidate.a), merged_.rootOf(candidate.b), 0);
     if (drift_px_ > 0) {
       findRivals(all);
+      refused_.clear();
       for (const LinePair& candidate : all)
         merged += tryMerge(merged_.rootOf(candidate.a), merged_.rootOf(candidate.b), drift_px_);
     }
@@ -122,9 +126,13 @@ class LineMerger {
   }
 
   /// Whether images show them as two lines.
-  bool areSeenAsTwo(const LineRecord& a, const LineRecord& b) const {
-    const SideBySide seen = sideBySide(a.views, b.views, &LineView::keyframe, params_.min_separation_px);
-    return seen.apart > 0 && 2 * seen.apart > seen.together;
+  bool areSeenAsTwo(std::size_t a, std::size_t b) const {
+    if (const auto known = two_.of(a, b)) return *known;
+    const SideBySide seen =
+        sideBySide(lines_[a].views, lines_[b].views, &LineView::keyframe, params_.min_separation_px);
+    const bool two = seen.apart > 0 && 2 * seen.apart > seen.together;
+    two_.set(a, b, two);
+    return two;
   }
 
   /// For every line the candidates that are left after merging without drift.
@@ -134,6 +142,10 @@ class LineMerger {
       const std::size_t a = merged_.rootOf(candidate.a), b = merged_.rootOf(candidate.b);
       if (a != b) rivals_[a].push_back(b), rivals_[b].push_back(a);
     }
+    for (std::vector<std::size_t>& rivals : rivals_) {
+      std::sort(rivals.begin(), rivals.end());
+      rivals.erase(std::unique(rivals.begin(), rivals.end()), rivals.end());
+    }
   }
 
   /// Whether `b` is the only line that `a` can be the same as: other lines nearly as close are the same as `b`.
@@ -142,7 +154,7 @@ class LineMerger {
     return std::all_of(rivals_[a].begin(), rivals_[a].end(), [&](std::size_t rival) {
       const std::size_t c = merged_.rootOf(rival);
       double other = 0;
-      return c == a || c == b || !near(a, c, other) || other > kRatio * score || !areSeenAsTwo(lines_[b], lines_[c]);
+      return c == a || c == b || !near(a, c, other) || other > kRatio * score || !areSeenAsTwo(b, c);
     });
   }
 
@@ -155,13 +167,33 @@ class LineMerger {
   bool tryMerge(std::size_t a, std::size_t b, double drift_px) {
     if (a == b) return false;
     if (b < a) std::swap(a, b);
-    const LineRecord &la = lines_[a], &lb = lines_[b];
+    if (refused_.isYes(a, b)) return false;
     double score = 0;
-    if (!near(a, b, score) || areSeenAsTwo(la, lb)) return false;
-    if (drift_px == 0 && mahalanobis2(la.estimate, lb.estimate) > kApart) return false;
-    if (drift_px > 0 &&
-        (shareKeyframe(la, lb) || !runTheSameWay(a, b) || !isUnmistakable(a, b, score) || !isUnmistakable(b, a, score)))
+    std::optional<LineRecord> joint;
+    if (mayBeOne(a, b, drift_px, score)) {
+      if (drift_px > 0 && (!isUnmistakable(a, b, score) || !isUnmistakable(b, a, score))) return false;
+      joint = jointLine(lines_[a], lines_[b], drift_px);
+    }
+    if (!joint) {
+      refused_.set(a, b, true);
       return false;
+    }
+    lines_[a] = std::move(*joint);
+    segments_[a] = drawn(lines_[a]);
+    lines_[b] = {};
+    merged_.join(a, b);
+    return true;
+  }
+
+  /// What can be said without fitting, of these two alone.
+  bool mayBeOne(std::size_t a, std::size_t b, double drift_px, double& score) const {
+    if (!near(a, b, score) || areSeenAsTwo(a, b)) return false;
+    if (drift_px == 0) return mahalanobis2(lines_[a].estimate, lines_[b].estimate) <= kApart;
+    return !shareKeyframe(lines_[a], lines_[b]) && runTheSameWay(a, b);
+  }
+
+  /// One line of both, if it explains their views.
+  std::optional<LineRecord> jointLine(const LineRecord& la, const LineRecord& lb, double drift_px) const {
     LineRecord joint = la;
     joint.id = std::min(la.id, lb.id);
     joint.views = mergedViews(la.views, lb.views);
@@ -171,12 +203,8 @@ class LineMerger {
     joint.mapped = la.mapped && lb.mapped;
     LineFitParams fit = fit_;
     fit.max_error_px += drift_px;
-    if (!fitLine(cameras_, fit, joint) || !explains(joint, la, lb, drift_px)) return false;
-    lines_[a] = std::move(joint);
-    segments_[a] = drawn(lines_[a]);
-    lines_[b] = {};
-    merged_.join(a, b);
-    return true;
+    if (!fitLine(cameras_, fit, joint) || !explains(joint, la, lb, drift_px)) return std::nullopt;
+    return joint;
   }
 
   /// Whether one line explains the views of both: hardly any becomes an outlier and errors stay small.
@@ -203,6 +231,8 @@ class LineMerger {
   double drift_px_;
   std::vector<LineRecord>& lines_;
   MergedRecords merged_;
+  PairAnswers refused_;  ///< whether the two cannot be one
+  mutable PairAnswers two_;
   std::vector<Segment3> segments_;
   std::vector<std::vector<std::size_t>> rivals_;
 };

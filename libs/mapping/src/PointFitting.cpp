@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "Evidence.h"
 #include "lintel/geometry/Rotation.h"
 #include "lintel/geometry/SmallLeastSquares.h"
 #include "lintel/geometry/SmallMatrices.h"
@@ -54,6 +55,18 @@ NormalEquations4 normalEquations(const Camera& camera, const std::vector<PointFi
   along << point.X.normalized(), 0;
   normal.H += normal.H.trace() * along * along.transpose();
   return normal;
+}
+
+std::vector<PointFitView> fitViews(const KeyframeCameras& cameras, const PointRecord& point) {
+  std::vector<const PointView*> fitted;
+  for (const PointView& v : point.views)
+    if (v.inlier) fitted.push_back(&v);
+  thinOut(fitted, kMostFitted);
+  std::vector<PointFitView> views;
+  views.reserve(fitted.size());
+  for (const PointView* v : fitted)
+    views.push_back({cameras.R_c_w(v->keyframe), cameras.T_w_c(v->keyframe).p, cameras.ray(v->px)});
+  return views;
 }
 
 double linearInverseDistance(const std::vector<PointFitView>& views, const Eigen::Vector3d& origin_w,
@@ -112,9 +125,7 @@ bool fitPoint(const KeyframeCameras& cameras, const PointFitParams& params, Poin
   for (PointView& v : point.views) v.inlier = cameras.contains(v.keyframe);
   bool found = false;
   for (int pass = 0; pass < 3; ++pass) {
-    std::vector<PointFitView> views;
-    for (const PointView& v : point.views)
-      if (v.inlier) views.push_back({cameras.R_c_w(v.keyframe), cameras.T_w_c(v.keyframe).p, cameras.ray(v.px)});
+    const std::vector<PointFitView> views = fitViews(cameras, point);
     found = views.size() >= 2 && estimate(cameras.camera(), views, params, point);
     if (!found) break;
     point.known = true;

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <tuple>
 
 #include "Evidence.h"
@@ -42,19 +43,8 @@ int mergePoints(const KeyframeCameras& cameras, const PointFitParams& fit, const
   const auto alike = [&](std::size_t a, std::size_t b) {
     return projectsOnto(cameras, points[a], points[b], most_px) && projectsOnto(cameras, points[b], points[a], most_px);
   };
-  std::vector<PointPair> candidates;  // a place seen again and again has too many neighbours to keep them all
-  index.eachPair([&](std::size_t a, std::size_t b) {
-    if (!shareKeyframe(points[a], points[b]) && alike(a, b))
-      candidates.push_back({(points[a].p_w - points[b].p_w).norm(), a, b});
-  });
-  std::sort(candidates.begin(), candidates.end());
-
-  MergedRecords records(points.size());
-  int merged = 0;
-  for (const PointPair& candidate : candidates) {
-    const std::size_t a = std::min(records.rootOf(candidate.a), records.rootOf(candidate.b)),
-                      b = std::max(records.rootOf(candidate.a), records.rootOf(candidate.b));
-    if (a == b || shareKeyframe(points[a], points[b]) || !alike(a, b)) continue;
+  const auto jointPoint = [&](std::size_t a, std::size_t b) -> std::optional<PointRecord> {
+    if (shareKeyframe(points[a], points[b]) || !alike(a, b)) return std::nullopt;
     PointRecord joint = points[a];
     joint.id = std::min(points[a].id, points[b].id);
     joint.views = mergedViews(points[a].views, points[b].views);
@@ -63,8 +53,29 @@ int mergePoints(const KeyframeCameras& cameras, const PointFitParams& fit, const
     const double separate = std::max(points[a].error_px, points[b].error_px);
     if (!fitPoint(cameras, fit, joint) || joint.error_px > std::min(params.point_max_error_px, 1.3 * separate + 0.3) ||
         std::any_of(joint.views.begin(), joint.views.end(), [](const PointView& v) { return !v.inlier; }))
+      return std::nullopt;
+    return joint;
+  };
+  std::vector<PointPair> candidates;  // a place seen again and again has too many neighbours to keep them all
+  index.eachPair([&](std::size_t a, std::size_t b) {
+    if (!shareKeyframe(points[a], points[b]) && alike(a, b))
+      candidates.push_back({(points[a].p_w - points[b].p_w).norm(), a, b});
+  });
+  std::sort(candidates.begin(), candidates.end());
+
+  MergedRecords records(points.size());
+  PairAnswers refused(records);
+  int merged = 0;
+  for (const PointPair& candidate : candidates) {
+    const std::size_t a = std::min(records.rootOf(candidate.a), records.rootOf(candidate.b)),
+                      b = std::max(records.rootOf(candidate.a), records.rootOf(candidate.b));
+    if (a == b || refused.isYes(a, b)) continue;
+    std::optional<PointRecord> joint = jointPoint(a, b);
+    if (!joint) {
+      refused.set(a, b, true);
       continue;
-    points[a] = std::move(joint);
+    }
+    points[a] = std::move(*joint);
     points[b] = {};
     records.join(a, b);
     ++merged;

@@ -157,6 +157,21 @@ TEST_F(BatchRefinementTest, TakesTheDriftAway) {
   EXPECT_NE(report.verdict.find("refined"), std::string::npos);
 }
 
+/// On long flights each landmark has fewer views in the adjustment.
+TEST_F(BatchRefinementTest, ViewsOfAllLandmarksTogetherAreBounded) {
+  MapMaterial all = material_;
+  const RefinementReport unbounded = refine(all);
+  params_.most_residuals = 600;
+  const double before = error(material_);
+  const RefinementReport report = refine(material_);
+  EXPECT_TRUE(report.accepted) << report.verdict;
+  const std::size_t others = 2 * report.points + 15 * material_.keyframes.size() + 100;  // lengths, IMU, priors
+  EXPECT_GT(unbounded.residuals, 2 * 1000 + others) << "else the bound means nothing";
+  EXPECT_LT(report.residuals, 2 * 600 + others);
+  EXPECT_EQ(report.points, unbounded.points) << "none is left out";
+  EXPECT_LT(error(material_), 0.3 * before);
+}
+
 TEST_F(BatchRefinementTest, IsRefusedWherePointsLeftOutFitWorse) {
   slideAllButHeldOut(params_, material_);
   const double before = error(material_);

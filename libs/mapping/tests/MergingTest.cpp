@@ -4,6 +4,7 @@
 #include "LineExtent.h"
 #include "LineMerging.h"
 #include "LineSplitting.h"
+#include "MergedRecords.h"
 #include "PointMerging.h"
 #include "SpatialIndex.h"
 #include "TestMaterial.h"
@@ -139,6 +140,23 @@ TEST_F(MergingTest, ATrackThatTheLineDoesNotExplainIsTakenOutAgain) {
   EXPECT_EQ(lines[1].views.size(), 3u);
   EXPECT_EQ(lines[1].views[0].track, 9u);
   EXPECT_EQ(splitLines(lines), 0) << "what is not known yet stays";
+}
+
+TEST(PairAnswers, HoldUntilOneOfTheTwoGrows) {
+  MergedRecords records(4);
+  PairAnswers same(records);
+  EXPECT_FALSE(same.of(0, 2)) << "not asked yet";
+  same.set(0, 2, true);
+  EXPECT_TRUE(same.isYes(0, 2));
+  EXPECT_FALSE(same.of(0, 3)) << "another one";
+  records.join(2, 3);
+  EXPECT_EQ(records.rootOf(3), 2u);
+  EXPECT_FALSE(same.of(0, 2)) << "with what was joined to it this may be otherwise";
+  same.set(0, 2, false);
+  ASSERT_TRUE(same.of(0, 2));
+  EXPECT_FALSE(same.isYes(0, 2));
+  same.clear();
+  EXPECT_FALSE(same.of(0, 2));
 }
 
 TEST_F(MergingTest, PointsInOneImageAreTwo) {

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include "Evidence.h"
 #include "TestMaterial.h"
 
 namespace lintel {
@@ -37,6 +38,30 @@ TEST_F(PointFittingTest, AViewOfSomethingElseIsAnOutlier) {
   EXPECT_LT((point.p_w - Eigen::Vector3d(0.7, 0.2, 5)).norm(), 1e-2);
   EXPECT_FALSE(point.views[1].inlier);
   EXPECT_TRUE(point.views[0].inlier && point.views[4].inlier);
+}
+
+TEST(Evidence, ThinningOutKeepsTheFirstTheLastAndWhatIsBetweenEvenly) {
+  std::vector<int> all{0, 1, 2, 3, 4, 5, 6, 7, 8};
+  std::vector<int> few = all;
+  thinOut(few, 5);
+  EXPECT_EQ(few, (std::vector<int>{0, 2, 4, 6, 8}));
+  thinOut(few, 2);
+  EXPECT_EQ(few, (std::vector<int>{0, 8}));
+  few = all;
+  thinOut(few, 9);
+  EXPECT_EQ(few, all);
+  thinOut(few, 0);
+  EXPECT_EQ(few, all) << "no limit";
+}
+
+/// A minute at one place: it is fitted to some of the views, and all are judged.
+TEST(PointFitting, OfThousandsOfViewsEachIsJudged) {
+  const MapMaterial material = materialAlongX(2000, 0.001);
+  PointRecord point = pointOf(material, 1, {0.7, 0.2, 5}, 0, 1999);
+  for (std::size_t i = 100; i < point.views.size(); i += 100) point.views[i].px.y() += 25;
+  ASSERT_TRUE(fitPoint(KeyframeCameras(material), {}, point));
+  EXPECT_LT((point.p_w - Eigen::Vector3d(0.7, 0.2, 5)).norm(), 1e-3);
+  EXPECT_EQ(inliersOf(point), 1981);
 }
 
 TEST_F(PointFittingTest, WithoutParallaxOrAtInfinityThereIsNoPoint) {

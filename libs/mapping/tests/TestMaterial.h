@@ -7,9 +7,9 @@
 
 namespace lintel::test {
 
-/// Keyframes 0 to n-1 along x, 0.5 m apart, 0.1 s apart, looking along the world's z through a camera that is mounted
+/// Keyframes 0 to n-1 along x, `step_m` and 0.1 s apart, looking along the world's z through a camera that is mounted
 /// turned. No IMU.
-inline MapMaterial materialAlongX(std::size_t n = 5) {
+inline MapMaterial materialAlongX(std::size_t n = 5, double step_m = 0.5) {
   MapMaterial material;
   material.rig.camera = {752, 480, 458, 457, 367, 248, -0.28, 0.07, 2e-4, 2e-5};
   material.rig.T_b_c = {expRotation({0.1, 0.05, 1.5}), {-0.02, -0.06, 0.01}};
@@ -18,7 +18,7 @@ inline MapMaterial materialAlongX(std::size_t n = 5) {
     k.id = id;
     k.t_ns = 1000 + static_cast<std::int64_t>(id) * 100'000'000;
     k.T_w_b =
-        Pose{Eigen::Quaterniond::Identity(), {0.5 * static_cast<double>(id), 0, 0}} * material.rig.T_b_c.inverse();
+        Pose{Eigen::Quaterniond::Identity(), {step_m * static_cast<double>(id), 0, 0}} * material.rig.T_b_c.inverse();
     material.keyframes.push_back(k);
   }
   return material;

@@ -20,7 +20,7 @@ struct RefinementParams {
   /// In all rounds but the last keyframes are adjusted that follow each other by so much; those between are carried by
   /// them, with all their views. 0: all are adjusted.
   double keyframe_interval_s = 0.3;
-  int most_keyframes = 400;  ///< adjusted in a round: in the last one of a long flight every second or third; 0: all
+  int most_keyframes = 400;  ///< adjusted in the last round, half as many in the others; 0: all
   bool lines = true;         ///< lines have residuals too; off: they follow the poses
   bool groups = true;        ///< lines of a parallel group share a direction, as far as the group is parallel
   /// Standard deviations of points and lines against the window's, which are larger than its residuals because what it
@@ -28,6 +28,7 @@ struct RefinementParams {
   double sigma_scale = 0.5;
   int min_views = 3;                           ///< keyframes that see a landmark of the adjustment
   int max_views = 40;                          ///< of a landmark that have residuals, spread over all it has; 0: all
+  int most_residuals = 300000;                 ///< views of all landmarks together; beyond it each has fewer; 0: all
   double line_max_sigma_direction_rad = 0.10;  ///< vaguer lines have no residuals
   double line_max_relative_sigma = 0.10;       ///< of their distance
   // points that were seen again, see joinPoints()
@@ -56,6 +57,7 @@ struct RefinementParams {
     field("sigma_scale", sigma_scale, Range{0.01, 100});
     field("min_views", min_views, Range{2, 1000});
     field("max_views", max_views, Range{0, 100000});
+    field("most_residuals", most_residuals, Range{0, 100000000});
     field("line_max_sigma_direction_rad", line_max_sigma_direction_rad, Range{0.0001, 10});
     field("line_max_relative_sigma", line_max_relative_sigma, Range{0.0001, 100});
     field("join_sigma_px", join_sigma_px, Range{0.01, 100});
@@ -116,6 +118,7 @@ class BatchRefinement {
     std::vector<bool> points, lines;
   };
   Used usedOf(const MapMaterial& material) const;
+  std::size_t viewsEach(const MapMaterial& material, const Used& used) const;
   std::vector<CameraErrors> errorsOf(MapMaterial& material) const;
   RefinementReport adjust(MapMaterial& material, const RefinementProgress& progress,
                           const std::vector<PointJoin>& joins) const;
