@@ -8,6 +8,14 @@
 
 namespace lintel {
 
+namespace {
+
+/// Of lines from cameras that see them. Where a few views hardly determine a line, that it passes through one of the
+/// cameras would explain this one's view whatever it shows.
+constexpr double kNearest_m = 0.05;
+
+}  // namespace
+
 LineAxes::LineAxes(const double* block) {
   const OrthonormalLine line = lineFromBlock(block);
   U = line.U.toRotationMatrix();
@@ -23,7 +31,7 @@ void LineResidual::linearise(const CameraView& view, const double* correction, c
   const Eigen::Vector3d from_camera_w = origin_w - view.p_w_c;
   const Eigen::Vector3d l = view.R_c_w * (n_w + from_camera_w.cross(d_w));  // moment about the camera, its axes
   const Eigen::Vector3d ends[2] = {start.corrected(correction), end.corrected(correction)};
-  const LineDistances distances(ends, l, 1, start.wide);
+  const LineDistances distances(ends, l, 1, start.wide, kNearest_m * sine);
   const Eigen::Vector2d scale = weight * Eigen::Vector2d(start.scale_px(correction), end.scale_px(correction));
   out.residual = scale.cwiseProduct(distances.residual);
   if (!jacobians) return;
@@ -47,6 +55,7 @@ void LineResidual::linearise(const CameraView& view, const double* correction, c
   out.d_target.col(1) = -nU.col(2);
   out.d_target.col(2) = nU.col(1) - dU.col(0);
   out.d_target.col(3) = -sine * d_nw * U.col(0) + cosine * d_dw * U.col(1);
+  if (distances.near) out.d_target.col(3) -= cosine / sine * out.residual;
 }
 
 }  // namespace lintel

@@ -129,6 +129,21 @@ TEST(LineFactor, GradientsFromFarToNearlyThroughTheCameraAndTheOrigin) {
   }
 }
 
+TEST(LineFactor, DerivativesOfALineThroughTheCameraAreBounded) {
+  const PoseBlock identity = toBlock(Pose{});
+  const CorrectionBlock zero = CorrectionBlock::Zero();
+  for (const double distance_m : {1e-2, 1e-5, 1e-9}) {
+    const LineBlock line = toBlock(toOrthonormal(lineThrough({-1, distance_m, 4}, {1, distance_m, -4})));
+    LineFactor factor(lineEnd(-0.3, 0.5, 50), lineEnd(0.3, 0.6, 50), {}, Eigen::Vector3d::Zero(), 1);
+    const double* blocks[] = {identity.data(), identity.data(), zero.data(), line.data()};
+    Eigen::Vector2d r;
+    Eigen::Matrix<double, 2, kPoseSize, Eigen::RowMajor> by_pose;
+    double* jacobians[] = {by_pose.data(), nullptr, nullptr, nullptr};
+    ASSERT_TRUE(factor.Evaluate(blocks, r.data(), jacobians));
+    EXPECT_LT(by_pose.cwiseAbs().maxCoeff(), 50 / 0.05) << "focal length over the least distance";
+  }
+}
+
 TEST(LineFactor, IsInPixelsOfTheCorrectedCamera) {
   // The distance of the observed pixels to the image of the line, near the correction about which the ends are
   // linearised, however large that is; of a short line, which hardly bends between its ends.
