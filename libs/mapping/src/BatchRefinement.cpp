@@ -269,7 +269,7 @@ RefinementReport BatchRefinement::adjust(MapMaterial& material, const Refinement
     if (round > 0 && params_.groups) groups = parallelLines(map_, material);
     const std::vector<Anchors> anchors =
         last ? fewAnchors(material.keyframes, params_.most_keyframes)
-             : fewAnchors(material.keyframes, params_.most_keyframes / 2, params_.keyframe_interval_s);
+             : fewAnchors(material.keyframes, (params_.most_keyframes + 1) / 2, params_.keyframe_interval_s);
     BatchProblem problem(calibrated_, estimator_, material, anchors, used.points, used.lines, viewsEach(material, used),
                          groups, params_.offset_walk_s);
     if (round == 0) report.imu_before = problem.imuError();

@@ -18,7 +18,7 @@ struct RefinementParams {
   int rounds = 3;           ///< of: estimate and merge landmarks, adjust, reject outliers
   int max_iterations = 12;  ///< of a round
   /// In all rounds but the last keyframes are adjusted that follow each other by so much; those between are carried by
-  /// them, with all their views. 0: all are adjusted.
+  /// them, and their views count. 0: all are adjusted.
   double keyframe_interval_s = 0.3;
   int most_keyframes = 400;  ///< adjusted in the last round, half as many in the others; 0: all
   bool lines = true;         ///< lines have residuals too; off: they follow the poses
