@@ -36,17 +36,4 @@ void thinOut(std::vector<Thing>& things, std::size_t most) {
   things.erase(things.begin() + static_cast<std::ptrdiff_t>(most), things.end());
 }
 
-/// The landmark with as many of its views as are fitted: for a first look.
-template <class Record>
-Record withFewViews(const Record& record) {
-  Record few = record;
-  thinOut(few.views, kMostFitted);
-  return few;
-}
-
-template <class Record>
-bool hasManyViews(const Record& record) {
-  return record.views.size() > kMostFitted;
-}
-
 }  // namespace lintel

@@ -172,7 +172,7 @@ class LineMerger {
     std::optional<LineRecord> joint;
     if (mayBeOne(a, b, drift_px, score)) {
       if (drift_px > 0 && (!isUnmistakable(a, b, score) || !isUnmistakable(b, a, score))) return false;
-      if (seemOne(lines_[a], lines_[b], drift_px)) joint = jointLine(lines_[a], lines_[b], drift_px);
+      joint = jointLine(lines_[a], lines_[b], drift_px);
     }
     if (!joint) {
       refused_.set(a, b, true);
@@ -190,12 +190,6 @@ class LineMerger {
     if (!near(a, b, score) || areSeenAsTwo(a, b)) return false;
     if (drift_px == 0) return mahalanobis2(lines_[a].estimate, lines_[b].estimate) <= kApart;
     return !shareKeyframe(lines_[a], lines_[b]) && runTheSameWay(a, b);
-  }
-
-  /// A first look at lines with thousands of views, most of which are refused.
-  bool seemOne(const LineRecord& a, const LineRecord& b, double drift_px) const {
-    if (!hasManyViews(a) && !hasManyViews(b)) return true;
-    return jointLine(withFewViews(a), withFewViews(b), drift_px).has_value();
   }
 
   /// One line of both, if it explains their views.

@@ -32,28 +32,6 @@ bool projectsOnto(const KeyframeCameras& cameras, const PointRecord& a, const Po
   return n > 0 && sum <= most;
 }
 
-/// One point of both, if it explains all their views.
-std::optional<PointRecord> jointPoint(const KeyframeCameras& cameras, const PointFitParams& fit,
-                                      const MergeParams& params, const PointRecord& a, const PointRecord& b) {
-  PointRecord joint = a;
-  joint.id = std::min(a.id, b.id);
-  joint.views = mergedViews(a.views, b.views);
-  joint.joined.push_back(std::max(a.id, b.id));
-  joint.joined.insert(joint.joined.end(), b.joined.begin(), b.joined.end());
-  const double separate = std::max(a.error_px, b.error_px);
-  if (!fitPoint(cameras, fit, joint) || joint.error_px > std::min(params.point_max_error_px, 1.3 * separate + 0.3) ||
-      std::any_of(joint.views.begin(), joint.views.end(), [](const PointView& v) { return !v.inlier; }))
-    return std::nullopt;
-  return joint;
-}
-
-/// A first look at points with thousands of views, most of which are refused.
-bool seemOne(const KeyframeCameras& cameras, const PointFitParams& fit, const MergeParams& params, const PointRecord& a,
-             const PointRecord& b) {
-  if (!hasManyViews(a) && !hasManyViews(b)) return true;
-  return jointPoint(cameras, fit, params, withFewViews(a), withFewViews(b)).has_value();
-}
-
 }  // namespace
 
 int mergePoints(const KeyframeCameras& cameras, const PointFitParams& fit, const MergeParams& params,
@@ -64,6 +42,19 @@ int mergePoints(const KeyframeCameras& cameras, const PointFitParams& fit, const
   const double most_px = 3 * params.point_max_error_px;
   const auto alike = [&](std::size_t a, std::size_t b) {
     return projectsOnto(cameras, points[a], points[b], most_px) && projectsOnto(cameras, points[b], points[a], most_px);
+  };
+  const auto jointPoint = [&](std::size_t a, std::size_t b) -> std::optional<PointRecord> {
+    if (shareKeyframe(points[a], points[b]) || !alike(a, b)) return std::nullopt;
+    PointRecord joint = points[a];
+    joint.id = std::min(points[a].id, points[b].id);
+    joint.views = mergedViews(points[a].views, points[b].views);
+    joint.joined.push_back(std::max(points[a].id, points[b].id));
+    joint.joined.insert(joint.joined.end(), points[b].joined.begin(), points[b].joined.end());
+    const double separate = std::max(points[a].error_px, points[b].error_px);
+    if (!fitPoint(cameras, fit, joint) || joint.error_px > std::min(params.point_max_error_px, 1.3 * separate + 0.3) ||
+        std::any_of(joint.views.begin(), joint.views.end(), [](const PointView& v) { return !v.inlier; }))
+      return std::nullopt;
+    return joint;
   };
   std::vector<PointPair> candidates;  // a place seen again and again has too many neighbours to keep them all
   index.eachPair([&](std::size_t a, std::size_t b) {
@@ -79,9 +70,7 @@ int mergePoints(const KeyframeCameras& cameras, const PointFitParams& fit, const
     const std::size_t a = std::min(records.rootOf(candidate.a), records.rootOf(candidate.b)),
                       b = std::max(records.rootOf(candidate.a), records.rootOf(candidate.b));
     if (a == b || refused.isYes(a, b)) continue;
-    std::optional<PointRecord> joint;
-    if (!shareKeyframe(points[a], points[b]) && alike(a, b) && seemOne(cameras, fit, params, points[a], points[b]))
-      joint = jointPoint(cameras, fit, params, points[a], points[b]);
+    std::optional<PointRecord> joint = jointPoint(a, b);
     if (!joint) {
       refused.set(a, b, true);
       continue;
