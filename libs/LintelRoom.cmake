@@ -33,9 +33,9 @@ function(lintel_precompile TARGET FIRST)
   target_compile_options(${TARGET} PRIVATE $<$<CXX_COMPILER_ID:GNU>:-fpch-preprocess>)
 endfunction()
 
-# GCC's garbage collection walks a precompiled header each time, a sixth of the time to compile: only above 500 MB.
+# GCC's garbage collection walks a precompiled header each time, a tenth of the time to compile: only above 1 GB.
 if(LINTEL_PRECOMPILE)
-  add_compile_options($<$<CXX_COMPILER_ID:GNU>:--param=ggc-min-heapsize=380000> $<$<CXX_COMPILER_ID:GNU>:--param=ggc-min-expand=30>)
+  add_compile_options($<$<CXX_COMPILER_ID:GNU>:--param=ggc-min-heapsize=1000000>)
 endif()
 
 # GNU gold links in a third of the time of ld. Packages are linked by the distribution's linker.
@@ -122,16 +122,14 @@ function(lintel_cases TARGET NAME)
   endforeach()
 endfunction()
 
-# lintel_room(NAME SOURCES file… [ROOMS room…] [PRIVATE target…] [TESTS file…] [TEST_LINKS target…] [BATCH number])
+# lintel_room(NAME SOURCES file… [ROOMS room…] [PRIVATE target…] [TESTS file…] [TEST_LINKS target…])
 #
 # One room: the static library lintel_NAME (alias lintel::NAME) with its public headers in include/lintel/NAME.
 # ROOMS are rooms above it in LINTEL_ROOMS; anything else is refused. PRIVATE are third parties.
 # TESTS become the executable NAME_tests, every file of them known to ctest. Library and headers are installed, and
 # find_package(lintel) makes it lintel::NAME elsewhere, unless LINTEL_ROOMS_NOT_INSTALLED names the room.
-# BATCH: how many sources are compiled at a time (lintel_unity), 4 if it is not said; where each takes seconds and
-# hundreds of megabytes by itself, fewer.
 function(lintel_room NAME)
-  cmake_parse_arguments(ARG "" "BATCH" "SOURCES;ROOMS;PRIVATE;TESTS;TEST_LINKS" ${ARGN})
+  cmake_parse_arguments(ARG "" "" "SOURCES;ROOMS;PRIVATE;TESTS;TEST_LINKS" ${ARGN})
   if(ARG_UNPARSED_ARGUMENTS)
     message(FATAL_ERROR "lintel_room(${NAME}): unknown arguments ${ARG_UNPARSED_ARGUMENTS}")
   endif()
@@ -143,13 +141,10 @@ function(lintel_room NAME)
     endif()
   endforeach()
 
-  if(NOT ARG_BATCH)
-    set(ARG_BATCH 4)
-  endif()
   add_library(lintel_${NAME} STATIC ${ARG_SOURCES})
   add_library(lintel::${NAME} ALIAS lintel_${NAME})
   lintel_warnings(lintel_${NAME})
-  lintel_unity(lintel_${NAME} ${ARG_BATCH})
+  lintel_unity(lintel_${NAME} 4)
   lintel_precompile(lintel_${NAME} lintel_geometry ${LINTEL_PRECOMPILED})
   target_include_directories(lintel_${NAME} PUBLIC
     $<BUILD_INTERFACE:${CMAKE_CURRENT_SOURCE_DIR}/include> $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}>)
@@ -164,7 +159,7 @@ function(lintel_room NAME)
 
   if(BUILD_TESTING AND ARG_TESTS)
     lintel_test_executable(${NAME}_tests ${ARG_TESTS})
-    lintel_unity(${NAME}_tests ${ARG_BATCH})
+    lintel_unity(${NAME}_tests 4)
     target_include_directories(${NAME}_tests PRIVATE ${CMAKE_CURRENT_SOURCE_DIR}/src ${CMAKE_CURRENT_SOURCE_DIR}/tests)
     target_link_libraries(${NAME}_tests PRIVATE lintel::${NAME} lintel_testing ${ARG_TEST_LINKS})
     lintel_cases(${NAME}_tests ${NAME} ${ARG_TESTS})
