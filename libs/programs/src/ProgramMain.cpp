@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "ProgramMain.h"
 
+#include <glog/logging.h>
+
 #include <algorithm>
 #include <csignal>
 #include <new>
@@ -21,8 +23,9 @@ std::string oneLine(std::string text) {
 }
 
 int programMain(const std::string& name, std::ostream& err, const std::function<int()>& body) {
-  std::signal(SIGXFSZ, SIG_IGN);  // a file over the user's limit is an error of writing, not a sudden end
-  std::signal(SIGPIPE, SIG_IGN);  // Ctrl-C ends `| tee` first: the results are written all the same
+  std::signal(SIGXFSZ, SIG_IGN);           // a file over the user's limit is an error of writing, not a sudden end
+  std::signal(SIGPIPE, SIG_IGN);           // Ctrl-C ends `| tee` first: the results are written all the same
+  FLAGS_minloglevel = google::GLOG_FATAL;  // Ceres' log is no word to a user: what it means for the result is said
   try {
     return body();
   } catch (const Stopped& stopped) {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "ProgramMain.h"
 
+#include <glog/logging.h>
 #include <gmock/gmock.h>
 
 #include <new>
@@ -34,6 +35,17 @@ TEST(ProgramMain, TurnsExceptionsIntoOneLineAndAnExitCode) {
   err.str("");
   EXPECT_EQ(programMain("prog", err, []() -> int { throw Stopped("stopped by SIGTERM", 143); }), 143);
   EXPECT_EQ(err.str(), "prog: stopped by SIGTERM\n");
+}
+
+TEST(ProgramMain, TheLogOfCeresIsNotForTheTerminal) {
+  std::ostringstream err;
+  testing::internal::CaptureStderr();
+  const int code = programMain("prog", err, [] {
+    LOG(ERROR) << "Linear solver failure";
+    return 0;
+  });
+  EXPECT_EQ(testing::internal::GetCapturedStderr() + err.str(), "");
+  EXPECT_EQ(code, 0);
 }
 
 }  // namespace
