@@ -42,6 +42,15 @@ std::vector<ParallelLines> parallelLines(const MapParams& params, const MapMater
   return groups;
 }
 
+/// Without landmarks, which are most of a material.
+MapMaterial camerasOf(const MapMaterial& material) {
+  MapMaterial cameras;
+  cameras.rig = material.rig;
+  cameras.time_offset_s = material.time_offset_s;
+  cameras.keyframes = material.keyframes;
+  return cameras;
+}
+
 /// Whether a point track is held out: every n-th is left out of the adjustment, and its error shows how good that is.
 bool isHeldOut(const PointRecord& point, double share) {
   const auto period = static_cast<std::uint64_t>(std::lround(1 / std::max(share, 1e-6)));
@@ -237,7 +246,7 @@ std::vector<CameraErrors> BatchRefinement::errorsOf(MapMaterial& material) const
 RefinementReport BatchRefinement::adjust(MapMaterial& material, const RefinementProgress& progress,
                                          const std::vector<PointJoin>& joins) const {
   RefinementReport report;
-  const MapMaterial before = material;
+  const MapMaterial before = camerasOf(material);
   std::vector<PointRecord> held_out;
   for (const PointRecord& point : material.points)
     if (isHeldOut(point, params_.held_out_share)) held_out.push_back(point);

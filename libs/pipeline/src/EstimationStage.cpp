@@ -109,13 +109,12 @@ void EstimationStage::refineMap(MapMaterial& material, const FinishOptions& opti
   }
   const StageClock::Scope scope(result_.statistics.refinement);
   const PlaceReport& places = result_.loops.places;
-  const MapMaterial separate = places.pairs.empty() ? MapMaterial{} : material;
   alignPieces(places.alignments, material);
   const bool spread = spreadDrift(sightingsOf(places, loops_.cameras()), material);
   RefinementReport& report = result_.refinement;
   report = refinement_.refine(material, options.refinement, joinsOf(result_.loops));
   if (!report.cancelled && (spread || !places.alignments.empty()) && (!report.accepted || report.joins_refused)) {
-    material = separate;
+    material = map_.material();  // as it was before pieces and drift were moved
     report = refinement_.refine(material, options.refinement);
     report.joins_refused = true;
   }
