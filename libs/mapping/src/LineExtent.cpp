@@ -6,6 +6,7 @@
 #include <map>
 #include <vector>
 
+#include "AgreedEnds.h"
 #include "LineViews.h"
 
 namespace lintel {
@@ -53,13 +54,16 @@ std::optional<std::pair<double, double>> coveredStretch(const std::vector<SeenPi
 std::optional<std::pair<double, double>> seenStretch(const KeyframeCameras& cameras, const LineRecord& line,
                                                      double share) {
   std::map<TrackId, std::vector<SeenPiece>> by_track;
+  std::vector<SeenPiece> all;
   const auto open = [&](const Eigen::Vector2d& px) { return !cameras.camera().contains(px, kBorder_px); };
   for (const LineView& v : line.views) {
-    std::pair<double, double> stretch;
-    if (!v.inlier || !viewStretch(cameras, line.estimate, v, stretch)) continue;
-    const auto [start, end] = stretch;
-    by_track[v.track].push_back(start < end ? SeenPiece{start, end, open(v.start_px), open(v.end_px)}
-                                            : SeenPiece{end, start, open(v.end_px), open(v.start_px)});
+    if (!v.inlier) continue;
+    const std::optional<ViewStretch> seen = viewStretch(cameras, line.estimate, v);
+    if (!seen) continue;
+    const auto [start, end, start_m_per_px, end_m_per_px] = *seen;
+    all.push_back(start < end ? SeenPiece{start, end, open(v.start_px), open(v.end_px), start_m_per_px, end_m_per_px}
+                              : SeenPiece{end, start, open(v.end_px), open(v.start_px), end_m_per_px, start_m_per_px});
+    by_track[v.track].push_back(all.back());
   }
   std::optional<std::pair<double, double>> whole;
   for (const auto& [track, pieces] : by_track) {
@@ -68,7 +72,7 @@ std::optional<std::pair<double, double>> seenStretch(const KeyframeCameras& came
     whole =
         whole ? std::make_pair(std::min(whole->first, piece->first), std::max(whole->second, piece->second)) : *piece;
   }
-  return whole;
+  return whole ? std::make_optional(withinAgreedEnds(all, share, *whole)) : whole;
 }
 
 Segment3 segmentOf(const KeyframeCameras& cameras, const LineRecord& line, const std::pair<double, double>& stretch) {
@@ -77,9 +81,10 @@ Segment3 segmentOf(const KeyframeCameras& cameras, const LineRecord& line, const
   };
   bool forward = true;
   for (const LineView& v : line.views) {
-    std::pair<double, double> seen;
-    if (!v.inlier || !viewStretch(cameras, line.estimate, v, seen)) continue;
-    forward = seen.second >= seen.first;
+    if (!v.inlier) continue;
+    const std::optional<ViewStretch> seen = viewStretch(cameras, line.estimate, v);
+    if (!seen) continue;
+    forward = seen->end >= seen->start;
     break;
   }
   return forward ? Segment3{at(stretch.first), at(stretch.second)} : Segment3{at(stretch.second), at(stretch.first)};

@@ -15,6 +15,7 @@ namespace lintel {
 struct SeenPiece {
   double from = 0, to = 0;
   bool from_open = false, to_open = false;
+  double from_m_per_px = 0, to_m_per_px = 0;  ///< how far a pixel moves the end along the line
 };
 
 /// The stretch of a line that at least two observations saw, and `share` of those that would have seen it: the ones
@@ -25,7 +26,7 @@ std::optional<std::pair<double, double>> coveredStretch(const std::vector<SeenPi
 
 /// From where to where a line was seen, metres from its middle along its direction, from < to. Each track of a merged
 /// line gives its coveredStretch(): a piece that was seen less often than another still counts, a single view that ran
-/// past the end does not.
+/// past the end does not. It ends where the views of all tracks agree that it does (AgreedEnds.h).
 std::optional<std::pair<double, double>> seenStretch(const KeyframeCameras& cameras, const LineRecord& line,
                                                      double share);
 

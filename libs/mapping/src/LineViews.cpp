@@ -18,21 +18,20 @@ NearestToRay nearestToRay(const LineEstimate& line, const Eigen::Vector3d& p_w_c
   return nearest;
 }
 
-bool viewStretch(const KeyframeCameras& cameras, const LineEstimate& line, const LineView& view,
-                 std::pair<double, double>& stretch) {
+std::optional<ViewStretch> viewStretch(const KeyframeCameras& cameras, const LineEstimate& line, const LineView& view) {
   // Sines of the angle between ray and line: below, the point nearest to the ray is not known.
   constexpr double kLeastSine = 0.05, kMostSine = 0.5, kSigmas = 3, kLeastDepth_m = 0.05;
   const double least_sine = std::clamp(kSigmas * line.sigmaDirection(), kLeastSine, kMostSine);
   const Eigen::Vector2d px[2] = {view.start_px, view.end_px};
-  double places[2];
+  double places[2], m_per_px[2];
   for (int k = 0; k < 2; ++k) {
     const Eigen::Vector3d ray_w = (cameras.R_c_w(view.keyframe).transpose() * cameras.ray(px[k])).normalized();
     const NearestToRay nearest = nearestToRay(line, cameras.T_w_c(view.keyframe).p, ray_w);
-    if (nearest.sine2 < least_sine * least_sine || nearest.depth_m <= kLeastDepth_m) return false;
+    if (nearest.sine2 < least_sine * least_sine || nearest.depth_m <= kLeastDepth_m) return std::nullopt;
     places[k] = nearest.along_m;
+    m_per_px[k] = nearest.depth_m / (std::sqrt(nearest.sine2) * cameras.camera().meanFocal());
   }
-  stretch = {places[0], places[1]};
-  return true;
+  return ViewStretch{places[0], places[1], m_per_px[0], m_per_px[1]};
 }
 
 double viewError(const KeyframeCameras& cameras, const LineEstimate& line, const LineView& view) {
