@@ -15,7 +15,7 @@ constexpr double kSpan_s = 2, kLeast_s = 0.25;
 constexpr double kHidden = 3;  // how much more white noise there may be than the samples show
 constexpr double kWhiteFor_s = 0.5;
 constexpr double kUnderstated = 1.5;  // a data sheet that is wrong by less is kept
-constexpr double kVibrationShare = 0.15;
+constexpr double kGyroVibrationShare = 0.3, kAccelVibrationShare = 0.15;
 constexpr double kScaleError = 0.002;
 constexpr double kScaleErrorLasts_s = 1;
 
@@ -49,9 +49,9 @@ void keepSmallest(const std::optional<double>& density, std::int64_t now_ns, std
   smallest = std::min(smallest.value_or(*density), *density);
 }
 
-double sum(double white, double vibration, double motion) {
-  const double slow = kScaleError * motion * std::sqrt(kScaleErrorLasts_s), remains = kVibrationShare * vibration;
-  return std::sqrt(white * white + remains * remains + slow * slow);
+double sum(double white, double remaining_vibration, double motion) {
+  const double slow = kScaleError * motion * std::sqrt(kScaleErrorLasts_s);
+  return std::sqrt(white * white + remaining_vibration * remaining_vibration + slow * slow);
 }
 
 std::string remark(const char* what, double given, double taken, const char* unit) {
@@ -132,8 +132,8 @@ ImuNoise effectiveNoise(const ImuNoise& given, const NoiseMeter& meter) {
   ImuNoise noise = whiteNoise(given, meter);
   if (!meter.now()) return noise;
   const SampledNoise& now = *meter.now();
-  noise.gyro_noise = sum(noise.gyro_noise, now.gyro_density, now.gyro_motion);
-  noise.accel_noise = sum(noise.accel_noise, now.accel_density, now.accel_motion);
+  noise.gyro_noise = sum(noise.gyro_noise, kGyroVibrationShare * now.gyro_density, now.gyro_motion);
+  noise.accel_noise = sum(noise.accel_noise, kAccelVibrationShare * now.accel_density, now.accel_motion);
   return noise;
 }
 

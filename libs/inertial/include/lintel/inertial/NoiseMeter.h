@@ -51,8 +51,8 @@ class NoiseMeter {
 /// The densities to integrate with, for what a data sheet says and what the samples show:
 /// - white noise: as given, where it lies between what sensors can do and three times what was measured at the
 ///   quietest (a filter in the sensor may hide as much); as measured where it is white and more than given;
-/// - vibration: periodic, so that most of it integrates to nothing; 0.15 stay (by the errors of
-///   the flights of doc/benchmarks.md);
+/// - vibration: periodic, so that most of it integrates to nothing; 0.3 of the gyroscope's and 0.15 of the
+///   accelerometer's stay (by what samples of flights are wrong by, doc/benchmarks.md);
 /// - what calibration leaves in scale and alignment of a MEMS sensor's axes, 0.2 % of the motion, lasting a second.
 /// Walks are given bounds of what sensors do.
 ImuNoise effectiveNoise(const ImuNoise& given, const NoiseMeter& meter);
