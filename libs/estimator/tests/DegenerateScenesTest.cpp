@@ -124,22 +124,23 @@ double angle_deg(const RetiredLine& line, const TrackedFlight& flight) {
   return std::asin(std::min(1.0, d.cross(line.line_w.d.normalized()).norm())) * 180 / M_PI;
 }
 
+/// Of the direction: median over the rails; over those that are tied, where lines are constrained.
+double railsError_deg(const TrackedFlight& flight, const std::string& mode) {
+  std::vector<double> errors;
+  for (const auto& [id, line] : flown(flight, mode).retired)
+    if (mode != "constrain" || line.group != 0) errors.push_back(angle_deg(line, flight));
+  EXPECT_GE(errors.size(), 8u) << "most rails are tied to the direction of the motion";
+  return errors.empty() ? 0 : upperMedian(errors);
+}
+
 TEST(DegenerateScenes, RailsAlongTheMotionGetTheirDirection) {
-  const TrackedFlight rails_only = straightFlight(rails());
-  const auto errors = [&](const std::string& mode) {
-    std::vector<double> result;
-    for (const auto& [id, line] : flown(rails_only, mode).retired)
-      if (mode != "constrain" || line.group != 0) result.push_back(angle_deg(line, rails_only));
-    return result;
-  };
-  std::vector<double> use = errors("use"), constrain = errors("constrain");
-  ASSERT_GE(use.size(), 8u);
-  ASSERT_GE(constrain.size(), 8u) << "most rails are tied to the direction of the motion";
-  const double use_deg = upperMedian(use), constrain_deg = upperMedian(constrain);
-  RecordProperty("use_median_deg", std::to_string(use_deg));
-  RecordProperty("constrain_median_deg", std::to_string(constrain_deg));
-  EXPECT_LT(constrain_deg, 1.0);
-  EXPECT_LT(constrain_deg, use_deg / 3);
+  double worst_used_deg = 0;  // with some seeds the views alone find it
+  for (std::uint64_t seed = 1; seed <= 5; ++seed) {
+    const TrackedFlight rails_only = straightFlight(rails(), seed);
+    worst_used_deg = std::max(worst_used_deg, railsError_deg(rails_only, "use"));
+    EXPECT_LT(railsError_deg(rails_only, "constrain"), 1.0) << "seed " << seed;
+  }
+  EXPECT_GT(worst_used_deg, 3.0) << "without the constraint";
 }
 
 TEST(DegenerateScenes, PolesAndStrutsAmongRailsAreNotBent) {
