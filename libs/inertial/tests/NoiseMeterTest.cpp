@@ -95,6 +95,19 @@ TEST(EffectiveNoise, VibrationCountsAndTheQuietTimeIsRemembered) {
   EXPECT_NEAR(meter.quietest()->accel_density, kTrue.accel_noise, 0.2 * kTrue.accel_noise);
 }
 
+TEST(EffectiveNoise, ThreeTenthsOfTheGyroscopesVibrationStayAndLessOfTheAccelerometers) {
+  NoiseMeter meter;  // 83 Hz, far above white noise, and no other motion
+  ImuBatch batch;
+  for (int i = 0; i < 200; ++i) {
+    const double shake = std::sin(2 * M_PI * 83 * i / kRate_hz);
+    batch.push_back({std::llround(1e9 * i / kRate_hz), {0, 0.2 * shake, 0}, {0, 3 * shake, 9.81}});
+  }
+  meter.add(batch);
+  const ImuNoise noise = effectiveNoise(kTrue, meter);
+  EXPECT_NEAR(noise.gyro_noise / meter.now()->gyro_density, 0.30, 0.01);
+  EXPECT_NEAR(noise.accel_noise / meter.now()->accel_density, 0.15, 0.01);
+}
+
 TEST(EffectiveNoise, WithoutSamplesOnlyTheBoundsOfSensorsApply) {
   const ImuNoise noise = effectiveNoise({1e-4, 1e-9, 0.18, 1}, NoiseMeter());
   EXPECT_EQ(noise.gyro_noise, 1e-4);

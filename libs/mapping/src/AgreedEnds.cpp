@@ -5,6 +5,8 @@
 #include <cstddef>
 #include <optional>
 
+#include "lintel/core/Quantiles.h"
+
 namespace lintel {
 
 namespace {
@@ -17,16 +19,10 @@ struct ClosedEnd {
   double place = 0, m_per_px = 0;
 };
 
-double median(std::vector<double> values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
-
 double medianResolution(const std::vector<ClosedEnd>& ends) {
   std::vector<double> values;
   for (const ClosedEnd& end : ends) values.push_back(end.m_per_px);
-  return median(std::move(values));
+  return upperMedian(values);
 }
 
 /// Closed ends towards greater places, ascending.
@@ -64,7 +60,7 @@ double endWithin(const std::vector<SeenPiece>& pieces, double share, double end_
   const double all = static_cast<double>(past.size() + before.size());
   if (past.size() < 2 || static_cast<double>(past.size()) >= share * all) return end_m;
   std::nth_element(past.begin(), past.begin() + 1, past.end());
-  return past[1] > median(std::move(before)) ? *agreed : end_m;
+  return past[1] > upperMedian(before) ? *agreed : end_m;
 }
 
 }  // namespace

@@ -46,8 +46,8 @@ TEST(AgreedEnds, WhatManySawStays) {
 }
 
 TEST(AgreedEnds, EndsThatScatterAreWhereTheTrackerStopped) {
-  std::vector<SeenPiece> pieces = viewsTo(2.6, 3, 0.02);
-  for (int k = 0; k < 30; ++k) pieces.push_back({0, 1 + 0.05 * k, true, false, 0.01, 0.01});
+  std::vector<SeenPiece> pieces = viewsTo(2, 4) + viewsTo(2.6, 3, 0.02);
+  for (int k = 0; k < 26; ++k) pieces.push_back({0, 1 + 0.03 * k, true, false, 0.01, 0.01});
   EXPECT_EQ(withinAgreedEnds(pieces, kShare, {0, 2.6}), Stretch(0, 2.6));
 }
 
@@ -64,8 +64,13 @@ TEST(AgreedEnds, APieceBehindAGapIsNotPastTheEnd) {
 }
 
 TEST(AgreedEnds, FewViewsAgreeByChance) {
-  const std::vector<SeenPiece> pieces = viewsTo(2, 2) + viewsTo(2.6, 2, 0.02);
-  EXPECT_EQ(withinAgreedEnds(pieces, 0.9, {0, 2.6}), Stretch(0, 2.6));
+  const auto cut = [](int agree) {
+    std::vector<SeenPiece> pieces = viewsTo(2.6, 2, 0.02);
+    for (SeenPiece& piece : pieces) piece.to_open = true;
+    return withinAgreedEnds(pieces + viewsTo(2, agree), 0.9, {0, 2.6});
+  };
+  EXPECT_EQ(cut(2), Stretch(0, 2.6));
+  EXPECT_EQ(cut(3), Stretch(0, 2.01));
   EXPECT_EQ(withinAgreedEnds({}, kShare, {0, 1}), Stretch(0, 1));
 }
 
