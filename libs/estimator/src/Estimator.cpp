@@ -106,6 +106,9 @@ class Estimator::Impl {
   SlidingWindow window_;
   PlacementCheck placement_;
   ScaleDrift scale_drift_;
+  /// Before it moves nothing but the accelerometer says how far away points are. Where that may have correlated noise,
+  /// it follows what noise of the images shows, and a take-off comes out with a wrong scale: it is taken to have none.
+  bool started_at_rest_ = false;
   StampJitter stamp_jitter_;
   NoiseScale point_noise_, line_noise_;
   std::optional<WindowCovariance> sigma_;                        // of the last solve
@@ -183,6 +186,7 @@ void Estimator::Impl::addFrame(const FrameTracks& tracks) {
   if (!window_.frames.empty()) {
     const WindowFrame& before = window_.frames.back();
     frame.imu = std::make_shared<Preintegration>(biasOf(before.motion.data()), noise_.now(), rig_.gravity_m_s2);
+    if (started_at_rest_) frame.imu->leaveOutCorrelatedNoise();
     frame.imu->append(pending_imu_);
     const InertialState state = propagated(stateOf(before), *frame.imu);
     frame.pose = toBlock(state.T_w_b);
@@ -229,6 +233,7 @@ void Estimator::Impl::initialise(WindowUpdate& update) {
   addIntervals(window_, 1, stamp_jitter_);
   if (stampJitter_s() > 0) solve(update);
   scale_drift_.start(sigma_->relativeScaleSigma(window_));
+  started_at_rest_ = window_.frames.back().at_rest;
   update.status = EstimatorStatus::kTracking;
   first_pose_ns_ = update.t_ns;
   const std::vector<StateCovariance> covariances = startDrift(update);
@@ -424,6 +429,7 @@ void Estimator::Impl::clearWindow(bool keep_calibration) {
   }
   window_.relinearise();  // what comes in is linearised about what is kept
   placement_ = {};
+  started_at_rest_ = false;
   pending_imu_.clear();
 }
 

@@ -29,7 +29,10 @@ ImuFactor::ImuFactor(std::shared_ptr<const Preintegration> preintegration)
   sqrt_information_ = information.llt().matrixU();
   const double root_dt = std::sqrt(preintegration_->dt_s());
   gyro_walk_weight_ = 1.0 / (preintegration_->noise().gyro_walk * root_dt);
-  accel_walk_weight_ = 1.0 / (preintegration_->noise().accel_walk * root_dt);
+  const double correlated = preintegration_->noise().accel_correlated;
+  if (correlated > 0) kept_ = std::exp(-preintegration_->dt_s() / kAccelCorrelation_s);
+  accel_walk_weight_ =
+      1.0 / std::hypot(preintegration_->noise().accel_walk * root_dt, correlated * std::sqrt(1 - kept_ * kept_));
 }
 
 bool ImuFactor::Evaluate(double const* const* parameters, double* residuals, double** jacobians) const {
@@ -48,7 +51,8 @@ bool ImuFactor::Evaluate(double const* const* parameters, double* residuals, dou
   r.segment<3>(kV) = velocity_change - delta.delta_v;
   r.segment<3>(kP) = position_change - delta.delta_p;
   r.segment<3>(kBg) = gyro_walk_weight_ * (bias_j.gyro - bias_i.gyro);
-  r.segment<3>(kBa) = accel_walk_weight_ * (bias_j.accel - bias_i.accel);
+  const Eigen::Map<const Eigen::Vector3d> mean(parameters[4]);
+  r.segment<3>(kBa) = accel_walk_weight_ * (bias_j.accel - mean - kept_ * (bias_i.accel - mean));
   const Eigen::Vector3d r_theta = r.segment<3>(kTheta);
   r.head<9>() = sqrt_information_ * r.head<9>();
   if (!jacobians) return true;
@@ -79,7 +83,7 @@ bool ImuFactor::Evaluate(double const* const* parameters, double* residuals, dou
     out.setZero();
     out.topRows<9>() = sqrt_information_ * J;
     out.block<3, 3>(kBg, kBiasGyroAt).diagonal().setConstant(-gyro_walk_weight_);
-    out.block<3, 3>(kBa, kBiasAccelAt).diagonal().setConstant(-accel_walk_weight_);
+    out.block<3, 3>(kBa, kBiasAccelAt).diagonal().setConstant(-kept_ * accel_walk_weight_);
   }
   if (jacobians[2]) {
     Eigen::Map<Jacobian15<7>> out(jacobians[2]);
@@ -93,6 +97,11 @@ bool ImuFactor::Evaluate(double const* const* parameters, double* residuals, dou
     out.topLeftCorner<9, 3>() = sqrt_information_.middleCols<3>(kV) * R_bi_w;
     out.block<3, 3>(kBg, kBiasGyroAt).diagonal().setConstant(gyro_walk_weight_);
     out.block<3, 3>(kBa, kBiasAccelAt).diagonal().setConstant(accel_walk_weight_);
+  }
+  if (jacobians[4]) {
+    Eigen::Map<Jacobian15<kMeanBiasSize>> out(jacobians[4]);
+    out.setZero();
+    out.bottomRows<3>().diagonal().setConstant((kept_ - 1) * accel_walk_weight_);
   }
   return true;
 }

@@ -286,8 +286,8 @@ TEST(VanishingFactor, GradientsForShortAndLongLines) {
   }
 }
 
-std::shared_ptr<Preintegration> somePreintegration() {
-  auto preintegration = std::make_shared<Preintegration>(ImuBias{{0.01, 0.02, -0.01}, {0.05, 0, 0.1}}, ImuNoise{});
+std::shared_ptr<Preintegration> somePreintegration(const ImuNoise& noise = {}) {
+  auto preintegration = std::make_shared<Preintegration>(ImuBias{{0.01, 0.02, -0.01}, {0.05, 0, 0.1}}, noise);
   ImuBatch samples;
   for (int i = 0; i <= 20; ++i) {
     const double t = 0.005 * i;
@@ -310,21 +310,47 @@ TEST(ImuFactor, IsZeroForTheIntegratedMotion) {
   motion_i << v_i, pre->bias().gyro, pre->bias().accel;
   motion_j << v_i + gravityW() * dt + T_w_bi.q * pre->deltaV(), pre->bias().gyro, pre->bias().accel;
   const PoseBlock pose_i = toBlock(T_w_bi), pose_j = toBlock(T_w_bj);
-  const double* blocks[] = {pose_i.data(), motion_i.data(), pose_j.data(), motion_j.data()};
+  const MeanBiasBlock mean(3, 4, 5);  // without correlated noise it does not count
+  const double* blocks[] = {pose_i.data(), motion_i.data(), pose_j.data(), motion_j.data(), mean.data()};
   Eigen::Matrix<double, 15, 1> r;
   ASSERT_TRUE(ImuFactor(pre).Evaluate(blocks, r.data(), nullptr));
   EXPECT_LT(r.norm(), 1e-6);
 }
 
+TEST(ImuFactor, CorrelatedNoiseDecaysTowardsTheMeanBias) {
+  ImuNoise noise;
+  noise.accel_walk = 1e-6;
+  noise.accel_correlated = 0.03;
+  const auto pre = somePreintegration(noise);
+  const double a = std::exp(-0.1 / kAccelCorrelation_s);
+  ASSERT_NEAR(pre->dt_s(), 0.1, 1e-9);
+  const PoseBlock pose = toBlock(Pose{});
+  const MeanBiasBlock mean(0.2, -0.1, 0.3);
+  MotionBlock motion_i = MotionBlock::Zero(), motion_j = MotionBlock::Zero();
+  motion_i.segment<3>(kBiasAccelAt) = mean + Eigen::Vector3d(0.05, 0, -0.02);
+  motion_j.segment<3>(kBiasAccelAt) = mean + a * Eigen::Vector3d(0.05, 0, -0.02);
+  const double* blocks[] = {pose.data(), motion_i.data(), pose.data(), motion_j.data(), mean.data()};
+  Eigen::Matrix<double, 15, 1> r;
+  ASSERT_TRUE(ImuFactor(pre).Evaluate(blocks, r.data(), nullptr));
+  EXPECT_LT(r.tail<3>().norm(), 1e-9);
+  // in the long run by its standard deviation: what is new within the interval has the rest of the variance
+  motion_j[kBiasAccelAt] += 0.03 * std::sqrt(1 - a * a);
+  ASSERT_TRUE(ImuFactor(pre).Evaluate(blocks, r.data(), nullptr));
+  EXPECT_NEAR(r[12], 1, 1e-6);
+}
+
 TEST(ImuFactor, Gradients) {
-  const auto pre = somePreintegration();
+  ImuNoise noise;
+  noise.accel_correlated = 0.03;
+  const auto pre = somePreintegration(noise);
   const PoseBlock pose_i = toBlock(Pose{expRotation({0.3, 0.1, -1}), {1, 2, 3}});
   const PoseBlock pose_j = toBlock(Pose{expRotation({0.32, 0.13, -1.05}), {1.04, 2, 3.02}});
   MotionBlock motion_i, motion_j;
   motion_i << 0.4, -0.2, 0.1, 0.02, 0.01, -0.03, 0.1, 0.05, 0.2;
   motion_j << 0.5, -0.1, 0.1, 0.021, 0.012, -0.03, 0.12, 0.05, 0.21;
-  expectGradients(ImuFactor(pre), {&kPoseManifold, nullptr, &kPoseManifold, nullptr},
-                  {pose_i.data(), motion_i.data(), pose_j.data(), motion_j.data()}, 1e-5);
+  const MeanBiasBlock mean(0.08, 0.02, 0.15);
+  expectGradients(ImuFactor(pre), {&kPoseManifold, nullptr, &kPoseManifold, nullptr, nullptr},
+                  {pose_i.data(), motion_i.data(), pose_j.data(), motion_j.data(), mean.data()}, 1e-5);
 }
 
 }  // namespace

@@ -18,6 +18,7 @@ constexpr double kUnderstated = 1.5;  // a data sheet that is wrong by less is k
 constexpr double kGyroVibrationShare = 0.3, kAccelVibrationShare = 0.15;
 constexpr double kScaleError = 0.002;
 constexpr double kScaleErrorLasts_s = 1;
+constexpr double kCorrelated = 2.5;  // [sqrt(Hz)] the accelerometer's, per density of what vibration and motion leave
 
 /// What sensors can do: from tactical grade to the cheapest in telephones.
 struct Range {
@@ -134,6 +135,7 @@ ImuNoise effectiveNoise(const ImuNoise& given, const NoiseMeter& meter) {
   const SampledNoise& now = *meter.now();
   noise.gyro_noise = sum(noise.gyro_noise, kGyroVibrationShare * now.gyro_density, now.gyro_motion);
   noise.accel_noise = sum(noise.accel_noise, kAccelVibrationShare * now.accel_density, now.accel_motion);
+  noise.accel_correlated = kCorrelated * sum(0, kAccelVibrationShare * now.accel_density, now.accel_motion);
   return noise;
 }
 

@@ -2,6 +2,7 @@
 #include "lintel/inertial/Preintegration.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include "lintel/geometry/Rotation.h"
 
@@ -44,10 +45,11 @@ void Preintegration::repropagate(const ImuBias& bias) {
 
 void Preintegration::raiseNoise(const ImuNoise& least) {
   const ImuNoise raised{std::max(noise_.gyro_noise, least.gyro_noise), std::max(noise_.gyro_walk, least.gyro_walk),
-                        std::max(noise_.accel_noise, least.accel_noise), std::max(noise_.accel_walk, least.accel_walk)};
-  if (raised.gyro_noise == noise_.gyro_noise && raised.accel_noise == noise_.accel_noise) return;
+                        std::max(noise_.accel_noise, least.accel_noise), std::max(noise_.accel_walk, least.accel_walk),
+                        std::max(noise_.accel_correlated, least.accel_correlated)};
+  const bool same = raised.gyro_noise == noise_.gyro_noise && raised.accel_noise == noise_.accel_noise;
   noise_ = raised;
-  repropagate(bias_);
+  if (!same) repropagate(bias_);  // the others are not integrated
 }
 
 void Preintegration::integrate(const ImuSample& s0, const ImuSample& s1) {
@@ -91,6 +93,25 @@ void Preintegration::integrate(const ImuSample& s0, const ImuSample& s1) {
   delta_v_ += a * dt;
   delta_R_ = R1;
   dt_s_ += dt;
+}
+
+/// With e(t) the correlated noise, the integral v of e(t) - e(0) and the integral p of v have, in units of
+/// its standard deviation and time constant, u for the time and E for exp(-u),
+///   <v v> = u^2 + 2 u E + 2 E - 2,   <v p> = u^2 (u - 1 + E) / 2,   <p p> = u^4 / 4 - u^3 / 3 + 2 - (2 + 2 u + u^2) E.
+/// That the body turns meanwhile is left out: all axes are alike.
+Preintegration::Matrix9 Preintegration::correlatedCovariance() const {
+  constexpr double kShort = 0.02, T = kAccelCorrelation_s;  // below, these differences are lost to rounding
+  Matrix9 result = Matrix9::Zero();
+  const double u = dt_s_ / T, u2 = u * u, u3 = u * u2, E = std::exp(-u);
+  const double vv = u < kShort ? 2 * u3 / 3 : u2 + 2 * u * E + 2 * E - 2;
+  const double vp = u < kShort ? u2 * u2 / 4 : u2 * (u - 1 + E) / 2;
+  const double pp = u < kShort ? u2 * u3 / 10 : u2 * u2 / 4 - u3 / 3 + 2 - (2 + 2 * u + u2) * E;
+  const double variance = noise_.accel_correlated * noise_.accel_correlated;
+  result.block<3, 3>(kVelocity, kVelocity).diagonal().setConstant(variance * vv * T * T);
+  result.block<3, 3>(kVelocity, kPosition).diagonal().setConstant(variance * vp * T * T * T);
+  result.block<3, 3>(kPosition, kVelocity) = result.block<3, 3>(kVelocity, kPosition);
+  result.block<3, 3>(kPosition, kPosition).diagonal().setConstant(variance * pp * T * T * T * T);
+  return result;
 }
 
 Preintegration::Corrected Preintegration::corrected(const ImuBias& bias) const {

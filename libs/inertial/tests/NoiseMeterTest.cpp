@@ -108,6 +108,16 @@ TEST(EffectiveNoise, ThreeTenthsOfTheGyroscopesVibrationStayAndLessOfTheAccelero
   EXPECT_NEAR(noise.accel_noise / meter.now()->accel_density, 0.15, 0.01);
 }
 
+TEST(EffectiveNoise, VibrationAndMotionMakeCorrelatedNoiseAndWhiteNoiseDoesNot) {
+  const NoiseMeter still = measure(3), shaken = measure(3, 2);
+  const double vibration = 0.15 * shaken.now()->accel_density, motion = 0.002 * shaken.now()->accel_motion;
+  EXPECT_NEAR(effectiveNoise(kTrue, shaken).accel_correlated, 2.5 * std::hypot(vibration, motion), 1e-4);
+  EXPECT_GT(effectiveNoise(kTrue, shaken).accel_correlated, 0.02);
+  EXPECT_LT(effectiveNoise(kTrue, still).accel_correlated, 0.007) << "that of the motion";
+  EXPECT_EQ(whiteNoise(kTrue, shaken).accel_correlated, 0);
+  EXPECT_EQ(effectiveNoise(kTrue, NoiseMeter()).accel_correlated, 0) << "nothing is known yet";
+}
+
 TEST(EffectiveNoise, WithoutSamplesOnlyTheBoundsOfSensorsApply) {
   const ImuNoise noise = effectiveNoise({1e-4, 1e-9, 0.18, 1}, NoiseMeter());
   EXPECT_EQ(noise.gyro_noise, 1e-4);

@@ -112,6 +112,40 @@ TEST(Preintegration, WhatWasNotMeasuredIsUncertain) {
   EXPECT_GT(std::sqrt(bridged.covariance()(3, 3)), 0.4);          // m/s
 }
 
+TEST(Preintegration, CorrelatedNoiseLeavesTheStartsAsItsCovarianceSays) {
+  // of e(t) - e(0), <e(s) e(t)> = sigma^2 exp(-|t - s| / T), summed up over half-open steps of a four hundredth
+  const double T = kAccelCorrelation_s, sigma = 0.03;
+  for (const int samples : {1, 3, 20, 200, 600}) {
+    ImuNoise without, with;
+    with.accel_correlated = sigma;
+    Preintegration a({}, without), b({}, with);
+    ImuBatch batch;
+    for (int i = 0; i <= samples; ++i) batch.push_back({kStart_ns + i * kStep_ns, {0, 0, 0}, {0, 0, 9.8}});
+    a.append(batch);
+    b.append(batch);
+    constexpr int kSteps = 400;
+    const double dt = b.dt_s(), h = dt / kSteps;
+    double vv = 0, vp = 0, pp = 0;
+    for (int i = 0; i < kSteps; ++i)
+      for (int j = 0; j < kSteps; ++j) {
+        const double s = (i + 0.5) * h, t = (j + 0.5) * h;
+        const double c =
+            sigma * sigma * h * h * (std::exp(-std::abs(t - s) / T) - std::exp(-t / T) - std::exp(-s / T) + 1);
+        vv += c, vp += c * (dt - s), pp += c * (dt - s) * (dt - t);
+      }
+    const Preintegration::Matrix9 added = b.covariance() - a.covariance();
+    for (int axis = 0; axis < 3; ++axis) {
+      const int v = Preintegration::kVelocity + axis, p = Preintegration::kPosition + axis;
+      EXPECT_NEAR(added(v, v) / vv, 1, 0.02) << samples;
+      EXPECT_NEAR(added(v, p) / vp, 1, 0.02) << samples;
+      EXPECT_NEAR(added(p, v) / vp, 1, 0.02) << samples;
+      EXPECT_NEAR(added(p, p) / pp, 1, 0.02) << samples;
+    }
+    EXPECT_EQ(added.topRows<3>().norm(), 0) << "angles have none of it";
+    EXPECT_TRUE(Eigen::LLT<Preintegration::Matrix9>(b.covariance()).info() == Eigen::Success) << samples;
+  }
+}
+
 TEST(Preintegration, CovarianceOfPureNoiseIsThatOfARandomWalk) {
   ImuNoise noise;
   Preintegration p({}, noise);

@@ -66,6 +66,10 @@ std::vector<CameraErrors> BatchProblem::drawErrors() {
     blocks.insert(blocks.end(), {at(poseAt(k)), at(motionAt(k))});
     tiles.push_back(kPoseTangent + kMotionSize);
   }
+  for (std::size_t i = 0; i < meanBiases(); ++i) {
+    blocks.push_back(at(meanBiasOf(i)));
+    tiles.push_back(kMeanBiasSize);
+  }
   ceres::Problem::EvaluateOptions options;
   options.parameter_blocks = blocks;
   options.num_threads = 1;

@@ -85,6 +85,7 @@ BatchProblem::BatchProblem(const Rig& calibrated, const EstimatorParams& estimat
     motions_.push_back(motionOf(material_.keyframes, k));
   }
   findStretches();
+  findMeanBiases();
   placeBlocks();
   addPriors();
   addImu();
@@ -103,7 +104,8 @@ void BatchProblem::placeBlocks() {
   extrinsics_at_ = lines_at_ + lines_.size() * kLineSize;
   correction_at_ = extrinsics_at_ + kPoseSize;
   directions_at_ = correction_at_ + stretches() * kCorrectionSize;
-  keyframes_at_ = directions_at_ + groups_.size() * kDirectionSize;
+  mean_biases_at_ = directions_at_ + groups_.size() * kDirectionSize;
+  keyframes_at_ = mean_biases_at_ + meanBiases() * kMeanBiasSize;
   values_.resize(keyframes_at_ + material_.keyframes.size() * (kPoseSize + kMotionSize));
 
   for (std::size_t i = 0; i < points_.size(); ++i) {
@@ -127,6 +129,7 @@ void BatchProblem::placeBlocks() {
     Eigen::Map<DirectionBlock>(at(directions_at_ + g * kDirectionSize)) = groups_[g].direction_w;
     problem_->AddParameterBlock(at(directions_at_ + g * kDirectionSize), kDirectionSize, directionManifold());
   }
+  placeMeanBiases();
   for (std::size_t k = 0; k < material_.keyframes.size(); ++k) {
     const RetiredKeyframe& keyframe = material_.keyframes[k];
     Eigen::Map<PoseBlock>(at(poseAt(k))) = toBlock(keyframe.T_w_b);
@@ -149,14 +152,14 @@ void BatchProblem::addPriors() {
   addParts(makeExtrinsicsPriors(estimator_.calibration, calibrated_.T_b_c), extrinsics_at_);
   addParts(makeCorrectionPriors(estimator_.calibration), correction_at_);
   addCorrectionChanges();
+  addMeanBiasWalk();
   for (std::size_t k = 0; k < material_.keyframes.size(); ++k) {
     const RetiredKeyframe& keyframe = material_.keyframes[k];
     if (!isAnchor(k)) continue;
     if (keyframe.at_rest) add(makeRestPrior(estimator_.rest_velocity_sigma), motionAt(k));
     if (keyframe.imu && k > 0) continue;
-    // the first of a piece: its biases are known about; of a world: its place and yaw are free to choose
+    // the first of a world: its place and yaw are free to choose
     if (k == 0 || beginsWorld(keyframe.id)) add(makeGaugePrior(toBlock(keyframe.T_w_b)), poseAt(k));
-    add(makeBiasPrior(estimator_.initializer), motionAt(k));
   }
 }
 
@@ -175,6 +178,7 @@ BatchProblem::Summary BatchProblem::solve(int max_iterations, double least_gain,
   for (std::size_t i = 0; i < stretches(); ++i) ordering->AddElementToGroup(at(correctionOf(i)), 1);
   for (std::size_t g = 0; g < groups_.size(); ++g)
     ordering->AddElementToGroup(at(directions_at_ + g * kDirectionSize), 1);
+  for (std::size_t i = 0; i < meanBiases(); ++i) ordering->AddElementToGroup(at(meanBiasOf(i)), 1);
   for (std::size_t k = 0; k < material_.keyframes.size(); ++k) {
     if (!isAnchor(k)) continue;
     ordering->AddElementToGroup(at(poseAt(k)), 1);

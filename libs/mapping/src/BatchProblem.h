@@ -74,6 +74,9 @@ class BatchProblem {
   bool beginsWorld(FrameId keyframe) const;
   void countStamps(std::size_t from, std::size_t to, Preintegration& imu) const;
   void addImu();
+  void findMeanBiases();
+  void placeMeanBiases();
+  void addMeanBiasWalk();
   std::size_t mostViewsOf(const PointRecord& point) const;
   void addPoints();
   void addLines();
@@ -92,6 +95,9 @@ class BatchProblem {
   std::size_t stretches() const { return stretches_.empty() ? 1 : stretches_.back() + 1; }
   std::size_t correctionOf(std::size_t stretch) const { return correction_at_ + stretch * kCorrectionSize; }
   std::size_t correctionAt(std::size_t k) const { return correctionOf(stretches_[k]); }
+  std::size_t meanBiases() const { return mean_biases_.empty() ? 0 : mean_biases_.back() + 1; }
+  std::size_t meanBiasOf(std::size_t stretch) const { return mean_biases_at_ + stretch * kMeanBiasSize; }
+  std::size_t meanBiasAt(std::size_t k) const { return meanBiasOf(mean_biases_[k]); }
   std::size_t poseAt(std::size_t k) const { return keyframes_at_ + k * (kPoseSize + kMotionSize); }
   std::size_t motionAt(std::size_t k) const { return poseAt(k) + kPoseSize; }
 
@@ -116,10 +122,11 @@ class BatchProblem {
   std::vector<ParallelLines> groups_;
   std::vector<std::int64_t> keyframe_places_;  // by id
   std::vector<std::size_t> stretches_;         // of time, by place: each has a correction block of its own
+  std::vector<std::size_t> mean_biases_;       // the same for mean biases
   std::vector<FrameMotion> motions_;           // by place
   std::vector<double> values_;
   std::size_t points_at_ = 0, lines_at_ = 0, extrinsics_at_ = 0, correction_at_ = 0, directions_at_ = 0,
-              keyframes_at_ = 0;
+              mean_biases_at_ = 0, keyframes_at_ = 0;
 
   ceres::CauchyLoss point_loss_, line_loss_, calibration_loss_, structural_loss_, offset_loss_;
   std::deque<PointFactor> point_factors_;

@@ -49,6 +49,7 @@ void BatchProblem::settle() {
   };
   hold(at(extrinsics_at_), kPoseSize);
   for (std::size_t i = 0; i < stretches(); ++i) hold(at(correctionOf(i)), kCorrectionSize);
+  for (std::size_t i = 0; i < meanBiases(); ++i) hold(at(meanBiasOf(i)), kMeanBiasSize);
   for (std::size_t i = 0; i < points_.size(); ++i) hold(at(points_at_ + i * kPointSize), kPointSize);
   for (std::size_t i = 0; i < lines_.size(); ++i) hold(at(lines_at_ + i * kLineSize), kLineSize);
   for (std::size_t k = 0; k < anchors_.size(); ++k) {
@@ -60,7 +61,7 @@ void BatchProblem::settle() {
   }
   for (const auto& [k, factor] : imu_factors_)
     problem.AddResidualBlock(factor.get(), nullptr, at(poseAt(k - 1)), at(motionAt(k - 1)), at(poseAt(k)),
-                             at(motionAt(k)));
+                             at(motionAt(k)), at(meanBiasAt(k - 1)));
   for (const CarriedResidual& r : carried_views_)
     problem.AddResidualBlock(r.factor, r.loss, at(poseAt(r.keyframe)), at(extrinsics_at_), at(correctionAt(r.keyframe)),
                              r.landmark);

@@ -249,6 +249,7 @@ const MapSection kMapSections[kMapSectionCount] = {{"RIG_", encodeRig, decodeRig
                                                    {"PIEC", encodePieces, decodePieces},
                                                    {"IMU_", encodeImu, decodeImu},
                                                    {"STMP", encodeStamps, decodeStamps},
+                                                   {"CORR", encodeCorrelated, decodeCorrelated},
                                                    {"OFFS", encodeOffsets, decodeOffsets},
                                                    {"VIEW", encodeViews, decodeViews}};
 

@@ -19,7 +19,7 @@ struct MapSection {
 };
 
 /// All sections in the order in which they are written.
-constexpr std::size_t kMapSectionCount = 18;
+constexpr std::size_t kMapSectionCount = 19;
 extern const MapSection kMapSections[kMapSectionCount];
 
 // what merging needs, MergingSections.cpp
@@ -29,6 +29,8 @@ void encodeImu(const LineMap& map, ByteWriter& out);
 void decodeImu(ByteReader& in, LineMap& map);
 void encodeStamps(const LineMap& map, ByteWriter& out);
 void decodeStamps(ByteReader& in, LineMap& map);
+void encodeCorrelated(const LineMap& map, ByteWriter& out);
+void decodeCorrelated(ByteReader& in, LineMap& map);
 void encodeOffsets(const LineMap& map, ByteWriter& out);
 void decodeOffsets(ByteReader& in, LineMap& map);
 void encodeViews(const LineMap& map, ByteWriter& out);

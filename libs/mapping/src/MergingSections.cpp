@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Sections of the map file that only merging reads: pieces, the IMU between keyframes and by how
-// much the stamps are off between which it is, the clocks' offsets, what places look like.
+// Sections of the map file that only merging reads: pieces, the IMU between keyframes, by how much the stamps are off
+// between which it is and its correlated noise, the clocks' offsets, what places look like.
 #include <algorithm>
 
 #include "MapChecks.h"
@@ -12,7 +12,7 @@ namespace lintel {
 namespace {
 
 constexpr std::size_t kPieceSize = 8 + 8 + 8 + 8 + 4 + 4, kTextSize = 8, kImuSize = 8 + 1 + 6 * 8 + 4 * 8 + 8,
-                      kSampleSize = 8 + 6 * 8 + 1, kStampSize = 8 + 8, kViewSize = 4 + 8 + 8,
+                      kSampleSize = 8 + 6 * 8 + 1, kStampSize = 8 + 8, kCorrelatedSize = 8 + 8, kViewSize = 4 + 8 + 8,
                       kFeatureSize = 4 + 4 + 8 + 1 + 4 * 8;
 
 enum KeyframeFlag : std::uint8_t { kAtRest = 1 };
@@ -117,6 +117,35 @@ void decodeStamps(ByteReader& in, LineMap& map) {
     if (!(sigma_s > 0 && sigma_s < 1)) throw ByteReaderError("has stamps that are off by no time that can be");
     auto imu = std::make_shared<Preintegration>(*map.keyframes[k].imu);
     imu->setStampNoise(sigma_s, Preintegration::Matrix9::Zero());  // the states count it: BatchProblem
+    map.keyframes[k].imu = imu;
+  }
+}
+
+/// Of keyframes whose accelerometer has correlated noise, by their places.
+void encodeCorrelated(const LineMap& map, ByteWriter& out) {
+  ByteWriter records;
+  std::uint64_t n = 0;
+  for (std::size_t k = 0; k < map.keyframes.size(); ++k) {
+    const auto& imu = map.keyframes[k].imu;
+    if (!imu || imu->noise().accel_correlated <= 0) continue;
+    ++n;
+    records.u64(k), records.f64(imu->noise().accel_correlated);
+  }
+  if (n == 0) return;
+  out.u64(n);
+  out.append(records);
+}
+
+void decodeCorrelated(ByteReader& in, LineMap& map) {
+  constexpr double kMost = 10;  // [m/s^2]
+  const std::size_t n = in.count(kCorrelatedSize);
+  for (std::size_t i = 0; i < n; ++i) {
+    const std::uint64_t k = in.u64();
+    const double sigma = in.f64();
+    if (k >= map.keyframes.size() || !map.keyframes[k].imu) throw ByteReaderError("has noise of what has no IMU");
+    if (!(sigma > 0 && sigma < kMost)) throw ByteReaderError("has noise that no accelerometer has");
+    auto imu = std::make_shared<Preintegration>(*map.keyframes[k].imu);
+    imu->raiseNoise({0, 0, 0, 0, sigma});
     map.keyframes[k].imu = imu;
   }
 }

@@ -216,11 +216,11 @@ TEST_F(BatchRefinementTest, ErrorsOfTheCamerasAreAsLargeAsItSays) {
     said_shift2 += material_.camera_errors[i].topRows<3>().squaredNorm() / kErrorDraws;
     said_turn2 += material_.camera_errors[i].bottomRows<3>().squaredNorm() / kErrorDraws;
   }
-  // one flight: its error as a whole may be half or twice of what is usual
-  EXPECT_GT(said_shift2, shift2 / 4);
-  EXPECT_LT(said_shift2, shift2 * 4);
-  EXPECT_GT(said_turn2, turn2 / 4);
-  EXPECT_LT(said_turn2, turn2 * 4);
+  // one flight: its error as a whole may be half or twice of what is usual, and the draws' mean is off by a quarter
+  EXPECT_GT(said_shift2, shift2 / 5);
+  EXPECT_LT(said_shift2, shift2 * 5);
+  EXPECT_GT(said_turn2, turn2 / 5);
+  EXPECT_LT(said_turn2, turn2 * 5);
 }
 
 TEST_F(BatchRefinementTest, ACancelledRefinementLeavesPosesAndEstimatesLandmarks) {

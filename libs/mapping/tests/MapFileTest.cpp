@@ -68,7 +68,7 @@ LineMap sampleMap() {
   map.time_offset_s = -0.0031;
   map.recordings = {"MH_01_easy", ""};
   map.pieces = {{0, 5, 8, 0, 0, 0}, {9, 1403636579763555584, 1403636579763555588, 20, 0, 1}};
-  auto imu = std::make_shared<Preintegration>(ImuBias{vec(), vec()}, ImuNoise{1e-3, 1e-4, 1e-5, 1e-6});
+  auto imu = std::make_shared<Preintegration>(ImuBias{vec(), vec()}, ImuNoise{1e-3, 1e-4, 1e-5, 1e-6, 0.02});
   imu->append({{5, vec(), vec()}, {1000005, vec(), vec(), true}, {2000005, vec(), vec()}});
   imu->setStampNoise(0.002, Preintegration::Matrix9::Zero());
   map.keyframes[1].imu = imu;
@@ -165,6 +165,7 @@ TEST_F(MapFile, EveryValueReturnsToTheBit) {
   EXPECT_EQ(back.keyframes[1].imu->deltaP(), map.keyframes[1].imu->deltaP());
   EXPECT_TRUE(back.keyframes[1].imu->samples()[1].bridged);
   EXPECT_EQ(back.keyframes[1].imu->stampSigma(), 0.002);
+  EXPECT_EQ(back.keyframes[1].imu->noise().accel_correlated, 0.02);
   ASSERT_EQ(back.views.size(), 1u);
   EXPECT_EQ(back.views[0].looks.t_ns, 17);
   EXPECT_EQ(back.views[0].looks.features[0].px, Eigen::Vector2f(1.5F, 2.25F));
@@ -271,9 +272,15 @@ TEST_F(MapFile, WholeSectionsThatSayWhatCannotBeAreRefused) {
          imu->append({{5, {}, {}}, {4'000'000'000'000, {}, {}}});
          m.keyframes[1].imu = imu;
        }},
-      {"stamps that are off by no time that can be", [](LineMap& m) {
+      {"stamps that are off by no time that can be",
+       [](LineMap& m) {
          auto imu = std::make_shared<Preintegration>(*m.keyframes[1].imu);
          imu->setStampNoise(2, Preintegration::Matrix9::Zero());
+         m.keyframes[1].imu = imu;
+       }},
+      {"noise that no accelerometer has", [](LineMap& m) {
+         auto imu = std::make_shared<Preintegration>(*m.keyframes[1].imu);
+         imu->raiseNoise({0, 0, 0, 0, 100});
          m.keyframes[1].imu = imu;
        }}};
   for (const auto& [what, change] : cases) {

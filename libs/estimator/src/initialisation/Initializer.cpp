@@ -13,6 +13,7 @@
 #include "initialisation/GyroAlignment.h"
 #include "landmarks/PointTriangulation.h"
 #include "lintel/core/Quantiles.h"
+#include "lintel/estimator/StatePriors.h"
 #include "lintel/geometry/Frames.h"
 #include "lintel/geometry/Rotation.h"
 #include "solver/Marginals.h"
@@ -109,7 +110,9 @@ std::string Initializer::startStatic(SlidingWindow& window) const {
     frame.pose = toBlock(Pose{R_w_b, Eigen::Vector3d::Zero()});
     frame.motion = motion;
     frame.at_rest = true;
-    if (frame.imu) frame.imu->repropagate(biasOf(motion.data()));
+    if (!frame.imu) continue;
+    frame.imu->repropagate(biasOf(motion.data()));
+    frame.imu->leaveOutCorrelatedNoise();
   }
   levelAndCentre(window);
   setBiasPrior(window, motion, 0.005, params_.rest_velocity_sigma);
@@ -322,13 +325,11 @@ double Initializer::relativeScaleSigma(SlidingWindow& window) const {
 
 void Initializer::setBiasPrior(SlidingWindow& window, const MotionBlock& mean, double gyro_sigma,
                                double velocity_sigma) const {
-  Eigen::VectorXd sigma(kMotionSize);
-  sigma << Eigen::Vector3d::Constant(velocity_sigma), Eigen::Vector3d::Constant(gyro_sigma),
-      Eigen::Vector3d::Constant(params_.initializer.bias_accel_sigma);
-  WindowPrior prior;
-  prior.blocks = {{BlockKey::kMotion, window.frames.front().id}};
-  prior.factor = makeBlockPrior(manifoldOf(BlockKey::kMotion), mean, sigma);
-  window.priors = {prior};
+  const BlockKey first{BlockKey::kMotion, window.frames.front().id}, mean_bias{BlockKey::kMeanBias, 0};
+  window.mean_bias = mean.segment<3>(kBiasAccelAt);
+  window.priors = {
+      {{first, mean_bias}, makeFirstMotionPrior(mean, velocity_sigma, gyro_sigma, window.frames.back().imu->noise())},
+      {{mean_bias}, makeMeanBiasPrior(window.mean_bias, params_.initializer)}};
 }
 
 void Initializer::levelAndCentre(SlidingWindow& window) const {

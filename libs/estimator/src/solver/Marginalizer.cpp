@@ -33,18 +33,19 @@ void eliminate(NormalEquations& eq, WorldDrift::Rows& K, Eigen::Index size) {
   K.rightCols(rest) -= K.leftCols(size) * gain.transpose();
 }
 
-/// Points slide: x' = x + noise of this variance, independent for each coordinate. x' takes the place of x in the
-/// equations. `rows`: of all points.
-void slide(Eigen::MatrixXd& H, Eigen::VectorXd& b, WorldDrift::Rows& K, const std::vector<Eigen::Index>& rows,
-           double variance) {
+/// States that walk, given by their rows: x' = x + noise of these variances, independent for each row. x' takes the
+/// place of x in the equations.
+void walk(Eigen::MatrixXd& H, Eigen::VectorXd& b, WorldDrift::Rows& K, const std::vector<Eigen::Index>& rows,
+          const std::vector<double>& variances) {
   if (rows.empty()) return;
-  const double w = 1 / variance;
+  const Eigen::VectorXd w =
+      Eigen::VectorXd::Map(variances.data(), static_cast<Eigen::Index>(variances.size())).cwiseInverse();
   const Eigen::MatrixXd H_x = H(Eigen::all, rows);
   Eigen::MatrixXd known = H_x(rows, Eigen::all);
-  known.diagonal().array() += w;
+  known.diagonal() += w;
   const Eigen::LLT<Eigen::MatrixXd> llt(known);
   const Eigen::MatrixXd half = llt.matrixL().solve(H_x.transpose());  // half' half = H_x (H_xx + W)^-1 H_x'
-  const Eigen::MatrixXd crossed = w * llt.matrixU().solve(half).transpose();
+  const Eigen::MatrixXd crossed = llt.matrixU().solve(half).transpose() * w.asDiagonal();
   const Eigen::VectorXd moved = llt.solve(Eigen::VectorXd(b(rows)));
   const Eigen::MatrixXd moved_K = llt.solve(K(Eigen::all, rows).transpose());  // n x 4
   H.selfadjointView<Eigen::Lower>().rankUpdate(half.transpose(), -1);
@@ -53,13 +54,17 @@ void slide(Eigen::MatrixXd& H, Eigen::VectorXd& b, WorldDrift::Rows& K, const st
   K -= (H_x * moved_K).transpose();
   H(Eigen::all, rows) = crossed;
   H(rows, Eigen::all) = crossed.transpose();
-  b(rows) = w * moved;
-  K(Eigen::all, rows) = w * moved_K.transpose();
+  b(rows) = w.cwiseProduct(moved);
+  K(Eigen::all, rows) = moved_K.transpose() * w.asDiagonal();
+}
+
+double walkOf(const BlockKey& key, const Staying& staying) {
+  if (key.kind == BlockKey::kPoint) return staying.walk_rad;
+  return key.kind == BlockKey::kMeanBias ? staying.bias_walk : 0;
 }
 
 GaugeAction actionOf(const BlockKey& key) {
   if (key.kind == BlockKey::kPoint) return GaugeAction::kPoint;
-
   if (key.kind == BlockKey::kPose) return GaugeAction::kPose;
   return key.kind == BlockKey::kMotion ? GaugeAction::kMotion : GaugeAction::kNone;
 }
@@ -95,12 +100,12 @@ bool isAbsolute(const Factor& factor) {
 }  // namespace
 
 std::optional<WindowPrior> marginalise(SlidingWindow& window, const std::vector<Factor>& factors,
-                                       const std::set<BlockKey>& dropped, const StayingPoints& staying) {
+                                       const std::set<BlockKey>& dropped, const Staying& staying) {
   std::set<BlockKey> first = dropped;
   for (const Factor& factor : factors)
     for (const BlockKey& key : factor.blocks)
-      if (isLandmark(key) && staying.keys.count(key) == 0) first.insert(key);
-  ReducedSystem system(window, factors, first, {}, staying.keys);
+      if (isLandmark(key) && staying.points.count(key) == 0) first.insert(key);
+  ReducedSystem system(window, factors, first, {}, staying.points);
   system.linearise();
   NormalEquations eq = system.eliminate();
   std::size_t kept = 0;
@@ -114,13 +119,17 @@ std::optional<WindowPrior> marginalise(SlidingWindow& window, const std::vector<
   Eigen::MatrixXd H = eq.H.bottomRightCorner(size, size).selfadjointView<Eigen::Lower>();
   Eigen::VectorXd b = eq.b.tail(size);
   K = K.rightCols(size).eval();
-  std::vector<Eigen::Index> point_rows;
+  std::vector<Eigen::Index> walking;
+  std::vector<double> variances;
   for (std::size_t i = kept; i < eq.blocks.size(); ++i) {
     blocks.push_back(priorBlockOf(window, eq.blocks[i], absolute));
-    if (eq.blocks[i].kind != BlockKey::kPoint) continue;
-    for (Eigen::Index row = eq.offsets[i]; row < eq.offsets[i + 1]; ++row) point_rows.push_back(row - start);
+    const double sigma = walkOf(eq.blocks[i], staying);
+    for (Eigen::Index row = eq.offsets[i]; sigma > 0 && row < eq.offsets[i + 1]; ++row) {
+      walking.push_back(row - start);
+      variances.push_back(sigma * sigma);
+    }
   }
-  if (staying.walk_rad > 0) slide(H, b, K, point_rows, staying.walk_rad * staying.walk_rad);
+  walk(H, b, K, walking, variances);
   for (std::size_t i = kept; i < eq.blocks.size(); ++i)
     window.drift.by_state[eq.blocks[i]] = K.middleCols(eq.offsets[i] - start, eq.offsets[i + 1] - eq.offsets[i]);
   LinearResidual root = informationRoot(H, b);

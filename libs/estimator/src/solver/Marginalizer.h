@@ -9,10 +9,11 @@
 
 namespace lintel {
 
-/// Points that stay, and how far each may slide on its surface from one prior to the next.
-struct StayingPoints {
-  std::set<BlockKey> keys;
-  double walk_rad = 0;  ///< standard deviation of a point's direction, as from its origin
+/// What stays and changes from one prior to the next.
+struct Staying {
+  std::set<BlockKey> points;
+  double walk_rad = 0;  ///< standard deviation of a point's direction, as from its origin: they slide on their surfaces
+  double bias_walk = 0;  ///< of the mean bias [m/s^2]
 };
 
 /// Schur complement [Sibley2010]: what the residuals say about the blocks that stay once those in `dropped` are gone.
@@ -20,6 +21,6 @@ struct StayingPoints {
 /// the others together with the states in `dropped`; directions without information are left out. Empty when nothing
 /// stays.
 std::optional<WindowPrior> marginalise(SlidingWindow& window, const std::vector<Factor>& factors,
-                                       const std::set<BlockKey>& dropped, const StayingPoints& staying = {});
+                                       const std::set<BlockKey>& dropped, const Staying& staying = {});
 
 }  // namespace lintel

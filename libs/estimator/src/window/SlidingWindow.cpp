@@ -38,6 +38,8 @@ double* SlidingWindow::block(const BlockKey& key) {
       return extrinsics.data();
     case BlockKey::kCorrection:
       return correction.data();
+    case BlockKey::kMeanBias:
+      return mean_bias.data();
     case BlockKey::kDirection:
       return directions.at(key.id).d_w.data();
     case BlockKey::kPoint:

@@ -2,6 +2,7 @@
 #include "lintel/estimator/StatePriors.h"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 
 namespace lintel {
@@ -80,11 +81,24 @@ std::unique_ptr<PriorFactor> makeStillPrior(const PoseBlock& earlier, double pos
   return std::make_unique<PriorFactor>(std::move(blocks), std::move(A), Eigen::VectorXd::Zero(3));
 }
 
-std::unique_ptr<PriorFactor> makeBiasPrior(const InitializerParams& params) {
-  MotionBlock sigma = MotionBlock::Constant(kFree);
-  sigma.segment<3>(kBiasGyroAt).setConstant(params.bias_gyro_sigma);
-  sigma.segment<3>(kBiasAccelAt).setConstant(params.bias_accel_sigma);
-  return makeMotionPrior(sigma);
+std::unique_ptr<PriorFactor> makeMeanBiasPrior(const Eigen::Vector3d& mean, const InitializerParams& params) {
+  return makeBlockPrior(std::make_shared<VectorManifold>(kMeanBiasSize), mean,
+                        MeanBiasBlock::Constant(params.bias_accel_sigma));
+}
+
+std::unique_ptr<PriorFactor> makeFirstMotionPrior(const MotionBlock& motion, double velocity_sigma,
+                                                  double bias_gyro_sigma, const ImuNoise& noise) {
+  const double bias_accel_sigma = std::hypot(noise.accel_correlated, noise.accel_walk * std::sqrt(kAccelCorrelation_s));
+  MotionBlock weights;
+  weights << Eigen::Vector3d::Constant(1 / velocity_sigma), Eigen::Vector3d::Constant(1 / bias_gyro_sigma),
+      Eigen::Vector3d::Constant(1 / bias_accel_sigma);
+  Eigen::MatrixXd A = Eigen::MatrixXd::Zero(kMotionSize, kMotionSize + kMeanBiasSize);
+  A.diagonal() = weights;
+  A.block<3, 3>(kBiasAccelAt, kMotionSize).diagonal().setConstant(-1 / bias_accel_sigma);
+  const MeanBiasBlock mean = motion.segment<3>(kBiasAccelAt);  // the difference alone counts
+  std::vector<PriorBlock> blocks{{std::make_shared<VectorManifold>(kMotionSize), motion},
+                                 {std::make_shared<VectorManifold>(kMeanBiasSize), mean}};
+  return std::make_unique<PriorFactor>(std::move(blocks), std::move(A), Eigen::VectorXd::Zero(kMotionSize));
 }
 
 }  // namespace lintel

@@ -86,7 +86,8 @@ void WindowFactors::addImu() {
     add(std::make_unique<ImuFactor>(frame.imu), {{BlockKey::kPose, before.id},
                                                  {BlockKey::kMotion, before.id},
                                                  {BlockKey::kPose, frame.id},
-                                                 {BlockKey::kMotion, frame.id}});
+                                                 {BlockKey::kMotion, frame.id},
+                                                 {BlockKey::kMeanBias, 0}});
   }
 }
 

@@ -25,7 +25,7 @@ std::vector<WindowPrior> takePriors(SlidingWindow& window, const std::set<BlockK
 }
 
 void marginaliseWith(SlidingWindow& window, std::vector<Factor> factors, const std::vector<WindowPrior>& priors,
-                     const std::set<BlockKey>& dropped, const StayingPoints& staying) {
+                     const std::set<BlockKey>& dropped, const Staying& staying) {
   for (const WindowPrior& prior : priors) factors.push_back({prior.factor.get(), nullptr, prior.blocks});
   if (auto prior = marginalise(window, factors, dropped, staying)) window.priors.push_back(std::move(*prior));
 }
@@ -88,13 +88,14 @@ bool outlives(const PointTrack& track, FrameId leaving, FrameId newest) {
 }  // namespace
 
 void marginaliseOldest(SlidingWindow& window, const std::vector<Factor>& measurements, const LandmarkParams& params) {
-  StayingPoints staying{lastingPoints(window, measurements, params)};
+  Staying staying{lastingPoints(window, measurements, params)};
   const double step_s = 1e-9 * static_cast<double>(window.frames[1].t_ns - window.frames[0].t_ns);
   staying.walk_rad = params.lasting_walk_px * std::sqrt(step_s) / window.camera().meanFocal();
-  const std::set<BlockKey> leaving = leavingWith(window, window.frames.front(), measurements, staying.keys);
+  if (const auto& imu = window.frames[1].imu) staying.bias_walk = imu->noise().accel_walk * std::sqrt(step_s);
+  const std::set<BlockKey> leaving = leavingWith(window, window.frames.front(), measurements, staying.points);
   const FrameId newest = window.frames.back().id;
-  marginaliseWith(window, goingWith(leaving, staying.keys, newest, measurements), takePriors(window, leaving), leaving,
-                  staying);
+  marginaliseWith(window, goingWith(leaving, staying.points, newest, measurements), takePriors(window, leaving),
+                  leaving, staying);
   for (auto& [id, track] : window.lines)
     if (leaving.count({BlockKey::kLine, id}) && track.verdict == LineVerdict::kGood &&
         (!track.best || track.sigma_direction_rad < track.best->sigma_direction_rad))
@@ -114,9 +115,9 @@ void marginaliseSecondNewest(SlidingWindow& window) {
   const WindowFrame& leaving = window.frames[n - 2];
   WindowFrame& newest = window.frames[n - 1];
   std::set<BlockKey> dropped{{BlockKey::kPose, leaving.id}, {BlockKey::kMotion, leaving.id}};
-  StayingPoints staying;
+  Staying staying;
   for (const BlockKey& key : pointsInPriors(window))
-    (outlives(window.points.at(key.id), leaving.id, newest.id) ? staying.keys : dropped).insert(key);
+    (outlives(window.points.at(key.id), leaving.id, newest.id) ? staying.points : dropped).insert(key);
   if (const std::vector<WindowPrior> priors = takePriors(window, dropped); !priors.empty())
     marginaliseWith(window, {}, priors, dropped, staying);
   auto joined = std::make_shared<Preintegration>(*leaving.imu);

@@ -14,7 +14,8 @@ ImuNoise WindowNoise::chosen(const ImuNoise& measured) const {
   return {one(given_.gyro_noise, measured.gyro_noise, params_.gyro_noise_scale),
           one(given_.gyro_walk, measured.gyro_walk, params_.gyro_walk_scale),
           one(given_.accel_noise, measured.accel_noise, params_.accel_noise_scale),
-          one(given_.accel_walk, measured.accel_walk, params_.accel_walk_scale)};
+          one(given_.accel_walk, measured.accel_walk, params_.accel_walk_scale),
+          one(given_.accel_correlated, measured.accel_correlated, params_.accel_noise_scale)};
 }
 
 }  // namespace lintel

@@ -168,6 +168,26 @@ TEST_F(MarginalizerTest, APointThatSlidesGainsItsWalkAsCovariance) {
   EXPECT_LT((best(*after->factor) - best(before)).norm(), 1e-9);
 }
 
+TEST_F(MarginalizerTest, TheMeanBiasGainsItsWalkAndAPointItsOwn) {
+  const BlockKey point{BlockKey::kPoint, window_.points.begin()->first}, mean{BlockKey::kMeanBias, 0};
+  PriorBlock of_point{manifoldOf(BlockKey::kPoint), window_.points.begin()->second.point, GaugeAction::kPoint};
+  of_point.origin_w = window_.points.begin()->second.origin_w;
+  constexpr int n = kMeanBiasSize + kPointTangent;
+  Eigen::MatrixXd A = Eigen::MatrixXd::Identity(n, n);
+  for (int i = 0; i < n; ++i)
+    for (int k = 0; k < n; ++k) A(i, k) += 0.2 * std::sin(1 + 2.9 * i + 1.1 * k * k);
+  const PriorFactor before({{manifoldOf(BlockKey::kMeanBias), window_.mean_bias}, of_point}, A,
+                           Eigen::VectorXd::LinSpaced(n, -1, 1));
+  const auto after = marginalise(window_, {{&before, nullptr, {mean, point}}}, {}, {{point}, 0.2, 0.5});
+  ASSERT_TRUE(after);
+  ASSERT_EQ(after->blocks, (std::vector<BlockKey>{mean, point}));
+  const Eigen::MatrixXd unit = Eigen::MatrixXd::Identity(n, n);
+  Eigen::MatrixXd covariance = solved(before.information(), unit);
+  covariance.topLeftCorner<3, 3>().diagonal().array() += 0.5 * 0.5;
+  covariance.bottomRightCorner<3, 3>().diagonal().array() += 0.2 * 0.2;
+  EXPECT_LT((solved(after->factor->information(), unit) - covariance).norm(), 1e-9 * covariance.norm());
+}
+
 TEST_F(MarginalizerTest, NothingStaysNothingComes) {
   WindowFactors factors(window_, kParams.factors);
   factors.addGauge();

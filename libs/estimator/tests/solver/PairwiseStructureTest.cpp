@@ -20,6 +20,7 @@
 #include "TestWindow.h"
 #include "landmarks/LineTriangulation.h"
 #include "landmarks/PointTriangulation.h"
+#include "lintel/estimator/StatePriors.h"
 #include "lintel/factors/StructuralFactor.h"
 #include "lintel/geometry/Rotation.h"
 #include "solver/ReducedSystem.h"
@@ -79,6 +80,7 @@ WindowFactors factorsOf(const SlidingWindow& window, const std::vector<TrackId>&
   factors.add(makeBlockPrior(manifoldOf(BlockKey::kMotion), window.frames.front().motion,
                              Eigen::VectorXd::Constant(kMotionSize, 0.02)),
               {{BlockKey::kMotion, window.frames.front().id}});
+  factors.add(makeMeanBiasPrior(Eigen::Vector3d::Zero(), kParams.initializer), {{BlockKey::kMeanBias, 0}});
   const double pair_sigma = kSigma_rad * std::sqrt(static_cast<double>(lines.size()));
   for (std::size_t i = 0; i < lines.size(); ++i) {
     const BlockKey line{BlockKey::kLine, lines[i]};

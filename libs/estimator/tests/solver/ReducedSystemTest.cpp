@@ -7,6 +7,7 @@
 #include "TestWindow.h"
 #include "landmarks/LineTriangulation.h"
 #include "landmarks/PointTriangulation.h"
+#include "lintel/estimator/StatePriors.h"
 #include "lintel/factors/StructuralFactor.h"
 
 namespace lintel {
@@ -35,6 +36,7 @@ class ReducedSystemTest : public testing::Test {
     factors_->addPoints();
     factors_->addLines(kParams.degeneracy);
     factors_->addCalibrationPriors(kParams.calibration, window_.T_b_c());
+    factors_->add(makeMeanBiasPrior({0.1, 0, 0}, kParams.initializer), {{BlockKey::kMeanBias, 0}});
     factors_->addGauge();
     for (const auto& [id, track] : window_.lines)
       if (track.triangulated && !track.degenerate() && lines_++ % 2 == 0)

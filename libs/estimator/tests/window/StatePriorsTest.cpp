@@ -3,6 +3,9 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+#include <limits>
+
 #include "TestWindow.h"
 #include "lintel/geometry/Rotation.h"
 
@@ -20,6 +23,38 @@ double squaredAt(const PriorParts& parts, const double* block) {
     sum += r.squaredNorm();
   }
   return sum;
+}
+
+TEST(FirstMotionPrior, HoldsTheAccelerometersBiasToTheMeanBiasAndTheOthersToWhatTheyAre) {
+  ImuNoise noise;
+  noise.accel_walk = 0.03;
+  noise.accel_correlated = 0.04;
+  MotionBlock motion;
+  motion << 1, 2, 3, 0.01, 0.02, 0.03, 0.3, 0.2, 0.1;
+  const auto prior = makeFirstMotionPrior(motion, 0.5, 0.005, noise);
+  MotionBlock moved = motion;
+  moved[kVelocityAt] += 0.5;
+  moved[kBiasGyroAt + 1] -= 0.005;
+  const MeanBiasBlock mean = motion.segment<3>(kBiasAccelAt) + Eigen::Vector3d(0, 0, 0.05);
+  const double* blocks[] = {moved.data(), mean.data()};
+  Eigen::VectorXd r(prior->num_residuals());
+  ASSERT_TRUE(prior->Evaluate(blocks, r.data(), nullptr));
+  EXPECT_NEAR(r[kVelocityAt], 1, 1e-12);
+  EXPECT_NEAR(r[kBiasGyroAt + 1], -1, 1e-12);
+  EXPECT_NEAR(r[kBiasAccelAt + 2], -1, 1e-12) << "0.05 is the walk of a correlation time and the correlated noise";
+  EXPECT_NEAR(r.norm(), std::sqrt(3), 1e-12);
+}
+
+TEST(FirstMotionPrior, SaysNothingOfAVelocityThatIsNotKnown) {
+  const auto prior =
+      makeFirstMotionPrior(MotionBlock::Zero(), std::numeric_limits<double>::infinity(), 0.1, ImuNoise{});
+  MotionBlock fast = MotionBlock::Zero();
+  fast[kVelocityAt] = 100;
+  const MeanBiasBlock mean = MeanBiasBlock::Zero();
+  const double* blocks[] = {fast.data(), mean.data()};
+  Eigen::VectorXd r(prior->num_residuals());
+  ASSERT_TRUE(prior->Evaluate(blocks, r.data(), nullptr));
+  EXPECT_EQ(r.norm(), 0);
 }
 
 TEST(CalibrationPriors, TogetherAreOverEveryParameterOnce) {

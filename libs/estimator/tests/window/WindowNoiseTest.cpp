@@ -73,6 +73,19 @@ TEST_F(WindowNoiseTest, ARightDataSheetRaisesNothing) {
     EXPECT_EQ(frames.frames[k].imu->covariance(), before[k - 1]) << k;
 }
 
+TEST_F(WindowNoiseTest, WithAScaleTheAccelerometersCorrelatedNoiseIsMeantAsGivenToo) {
+  FactorParams params;
+  WindowNoise measured(kGiven, params);
+  params.accel_noise_scale = 2;
+  WindowNoise given(kGiven, params);
+  for (WindowNoise* noise : {&measured, &given}) noise->add(next());
+  ImuBatch shaken = next();
+  for (std::size_t i = 0; i < shaken.size(); ++i) shaken[i].accel.x() += i % 2 ? 3 : -3;
+  for (WindowNoise* noise : {&measured, &given}) noise->add(shaken);
+  EXPECT_GT(measured.now().accel_correlated, 0.02);
+  EXPECT_EQ(given.now().accel_correlated, 0);
+}
+
 TEST_F(WindowNoiseTest, ADensityWithAScaleIsMeantAsGiven) {
   FactorParams params;
   params.gyro_noise_scale = 2;

@@ -16,7 +16,13 @@ struct ImuNoise {
   double gyro_walk = 1.9393e-5;   ///< [rad/s^2/sqrt(Hz)]
   double accel_noise = 2.0e-3;    ///< [m/s^2/sqrt(Hz)]
   double accel_walk = 3.0e-3;     ///< [m/s^3/sqrt(Hz)]
+  /// Standard deviation of the accelerometer's exponentially correlated noise, a first-order Gauss-Markov process on
+  /// each axis [m/s^2]: errors of scale and alignment that change with the motion, vibration that aliases.
+  double accel_correlated = 0;
 };
+
+/// The correlation time of ImuNoise::accel_correlated [s].
+constexpr double kAccelCorrelation_s = 1;
 
 /// Calibration of the sensors that Lintel uses: one camera and one IMU. The body frame is the IMU's.
 struct Rig {

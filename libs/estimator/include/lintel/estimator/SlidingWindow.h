@@ -26,9 +26,9 @@ using FrameId = std::uint64_t;  ///< counts the frames that entered the window
 
 /// Names a parameter block of the window. Blocks move in memory, keys stay.
 struct BlockKey {
-  enum Kind { kPose, kMotion, kExtrinsics, kCorrection, kDirection, kPoint, kLine };
+  enum Kind { kPose, kMotion, kExtrinsics, kCorrection, kMeanBias, kDirection, kPoint, kLine };
   Kind kind = kPose;
-  std::uint64_t id = 0;  ///< frame, direction, point or line; 0 for the calibration
+  std::uint64_t id = 0;  ///< frame, direction, point or line; 0 for what is there once
   bool operator<(const BlockKey& o) const { return kind != o.kind ? kind < o.kind : id < o.id; }
   bool operator==(const BlockKey& o) const { return kind == o.kind && id == o.id; }
 };
@@ -151,6 +151,7 @@ class SlidingWindow {
   std::uint64_t next_direction = 1;
   PoseBlock extrinsics;  ///< T_b_c
   CorrectionBlock correction = CorrectionBlock::Zero();
+  MeanBiasBlock mean_bias = MeanBiasBlock::Zero();
   std::vector<WindowPrior> priors;  ///< from marginalisation and from initialisation
   WorldDrift drift;                 ///< since the first pose
   double unrolled_s = 0;            ///< the readout by which sightings have been moved to their frames' times [s]

@@ -12,7 +12,7 @@
 namespace lintel {
 
 // What is known about single states without any measurement of them, for the sliding window and for the batch
-// refinement alike. Each prior is over one block.
+// refinement alike. Priors are over one block where nothing else is said.
 
 /// Ties position and yaw of a pose block to what they are: the four directions that no measurement sees.
 std::unique_ptr<PriorFactor> makeGaugePrior(const PoseBlock& pose);
@@ -41,7 +41,12 @@ std::unique_ptr<PriorFactor> makeRestPrior(double velocity_sigma);
 /// Two poses at one position, to within `position_sigma` [m]; their pose blocks, the earlier one first.
 std::unique_ptr<PriorFactor> makeStillPrior(const PoseBlock& earlier, double position_sigma);
 
-/// The biases of a run's first state about zero; a motion block.
-std::unique_ptr<PriorFactor> makeBiasPrior(const InitializerParams& params);
+/// The mean bias of a run about `mean` [m/s^2].
+std::unique_ptr<PriorFactor> makeMeanBiasPrior(const Eigen::Vector3d& mean, const InitializerParams& params);
+
+/// Velocity and gyroscope's bias of a run's first state about those of `motion` with these standard deviations, and the
+/// accelerometer's bias about the mean bias by the correlated noise. The motion block, the mean bias.
+std::unique_ptr<PriorFactor> makeFirstMotionPrior(const MotionBlock& motion, double velocity_sigma,
+                                                  double bias_gyro_sigma, const ImuNoise& noise);
 
 }  // namespace lintel

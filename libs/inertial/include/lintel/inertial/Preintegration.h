@@ -18,7 +18,8 @@ struct ImuBias {
 
 /// Relative motion between two times from IMU samples alone, independent of the state at the start [Forster2017]:
 ///   delta_R = R_bi_bj,  delta_v = R_bi_w (v_j - v_i - g dt),  delta_p = R_bi_w (p_j - p_i - v_i dt - g dt^2 / 2),
-/// by midpoint integration, with first-order bias Jacobians and the covariance of the error (theta, v, p).
+/// by midpoint integration, with first-order bias Jacobians and the covariance of the error (theta, v, p). The bias is
+/// that of the interval's start; by how much correlated noise (ImuNoise) leaves it is in the covariance.
 class Preintegration {
  public:
   using Matrix9 = Eigen::Matrix<double, 9, 9>;
@@ -41,8 +42,10 @@ class Preintegration {
   /// Integrates all samples again with other biases as the point of linearisation.
   void repropagate(const ImuBias& bias);
 
-  /// Integrates all samples again with densities that are at least these.
+  /// Takes what is larger of its noise and this; integrates all samples again when that changes a density.
   void raiseNoise(const ImuNoise& least);
+
+  void leaveOutCorrelatedNoise() { noise_.accel_correlated = 0; }
 
   /// What the covariance has more because the times of both ends are uncertain, by sigma_s each; replaces what was set
   /// before, and stays when samples are appended (countStampJitter()).
@@ -63,7 +66,7 @@ class Preintegration {
 
   /// d (theta, v, p) / d (bias_gyro, bias_accel).
   const Matrix96& biasJacobian() const { return bias_jacobian_; }
-  Matrix9 covariance() const { return covariance_ + stamp_covariance_; }
+  Matrix9 covariance() const { return covariance_ + stamp_covariance_ + correlatedCovariance(); }
   double stampSigma() const { return stamp_sigma_s_; }  ///< [s]
 
   /// Deltas corrected to first order for biases other than bias() [Forster2017, eq. 44].
@@ -77,6 +80,7 @@ class Preintegration {
  private:
   void integrate(const ImuSample& s0, const ImuSample& s1);
   void reset();
+  Matrix9 correlatedCovariance() const;
 
   ImuBias bias_;
   ImuNoise noise_;
