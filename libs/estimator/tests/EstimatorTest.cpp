@@ -397,6 +397,23 @@ TEST(Estimator, RestsWhileItsMotorsRunBeforeTakeOff) {
     ASSERT_LT((updates[k].T_w_b.p - updates[kMotorsOn].T_w_b.p).norm(), 0.02) << "drift, frame " << k;
 }
 
+TEST(Estimator, OnlyAfterAStartInMotionTheAccelerometerHasCorrelatedNoise) {
+  const auto noiseAfter = [](double rest_s) {
+    const DelayedStart flown(std::make_shared<FigureTrajectory>(), rest_s);
+    TrackedFlight flight = fly(ImuSimulatorParams{}, tracksFor(rest_s + 5, 0.2), flown);
+    for (std::size_t k = static_cast<std::size_t>(20 * rest_s); k < flight.sim.frames.size(); ++k)
+      for (std::size_t i = 0; i < flight.sim.frames[k].imu.size(); ++i)  // its motors run
+        flight.sim.frames[k].imu[i].accel.x() += i % 2 == 0 ? 2 : -2;
+    std::set<bool> has_some;
+    for (const WindowUpdate& update : run(flight))
+      for (const RetiredKeyframe& keyframe : update.keyframes)
+        if (keyframe.imu) has_some.insert(keyframe.imu->noise().accel_correlated > 0);
+    return has_some;
+  };
+  EXPECT_EQ(noiseAfter(0), std::set<bool>{true});
+  EXPECT_EQ(noiseAfter(3), std::set<bool>{false});
+}
+
 /// Another motion, later.
 class Later : public Trajectory {
  public:

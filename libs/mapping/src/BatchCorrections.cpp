@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "BatchProblem.h"
+#include "BlockChange.h"
 
 namespace lintel {
 
@@ -27,24 +28,6 @@ CorrectionBlock correctionFrom(const Camera& camera, const Camera& calibrated, d
       camera.lens[0] - calibrated.lens[0], camera.lens[1] - calibrated.lens[1], 0, time_offset_s;
   return c;
 }
-
-/// By how much two blocks differ, each number in its standard deviations.
-class CorrectionChange final : public ceres::SizedCostFunction<kCorrectionSize, kCorrectionSize, kCorrectionSize> {
- public:
-  explicit CorrectionChange(const CorrectionBlock& weights) : weights_(weights) {}
-  bool Evaluate(double const* const* parameters, double* residuals, double** jacobians) const override {
-    const Eigen::Map<const CorrectionBlock> before(parameters[0]), after(parameters[1]);
-    Eigen::Map<CorrectionBlock>{residuals} = weights_.cwiseProduct(after - before);
-    for (int i = 0; i < 2; ++i)
-      if (jacobians && jacobians[i])
-        Eigen::Map<Eigen::Matrix<double, kCorrectionSize, kCorrectionSize, Eigen::RowMajor>>{jacobians[i]} =
-            ((i == 0 ? -1 : 1) * weights_).asDiagonal();
-    return true;
-  }
-
- private:
-  CorrectionBlock weights_;
-};
 
 /// Holds all corrections but the offset: to a thousandth of what is known of them beforehand.
 CorrectionBlock weightsOfTheSame(const CalibrationParams& p) {
@@ -91,9 +74,9 @@ void BatchProblem::addCorrectionChanges() {
     const double dt_s = std::max(kStretch_s, std::abs(1e-9 * static_cast<double>(dt_ns)));
     CorrectionBlock walk = CorrectionBlock::Zero();
     walk[kTimeOffsetAt] = 1 / (offset_walk_s_ * std::sqrt(dt_s));
-    own_factors_.push_back(std::make_unique<CorrectionChange>(same));
+    own_factors_.push_back(std::make_unique<BlockChange<kCorrectionSize>>(same));
     problem_->AddResidualBlock(own_factors_.back().get(), nullptr, at(correctionAt(before)), at(correctionAt(k)));
-    own_factors_.push_back(std::make_unique<CorrectionChange>(walk));
+    own_factors_.push_back(std::make_unique<BlockChange<kCorrectionSize>>(walk));
     problem_->AddResidualBlock(own_factors_.back().get(), &offset_loss_, at(correctionAt(before)), at(correctionAt(k)));
   }
 }

@@ -12,7 +12,7 @@ namespace lintel {
 namespace {
 
 constexpr std::size_t kPieceSize = 8 + 8 + 8 + 8 + 4 + 4, kTextSize = 8, kImuSize = 8 + 1 + 6 * 8 + 4 * 8 + 8,
-                      kSampleSize = 8 + 6 * 8 + 1, kStampSize = 8 + 8, kCorrelatedSize = 8 + 8, kViewSize = 4 + 8 + 8,
+                      kSampleSize = 8 + 6 * 8 + 1, kSigmaSize = 8 + 8, kViewSize = 4 + 8 + 8,
                       kFeatureSize = 4 + 4 + 8 + 1 + 4 * 8;
 
 enum KeyframeFlag : std::uint8_t { kAtRest = 1 };
@@ -37,6 +37,43 @@ std::shared_ptr<const Preintegration> decodeImu(ByteReader& in) {
   auto imu = std::make_shared<Preintegration>(bias, noise);
   imu->append(samples);
   return imu;
+}
+
+/// What keyframes' IMU has a standard deviation of, by their places; not where it is zero.
+template <class SigmaOf>
+void encodeSigmas(const LineMap& map, SigmaOf sigmaOf, ByteWriter& out) {
+  ByteWriter records;
+  std::uint64_t n = 0;
+  for (std::size_t k = 0; k < map.keyframes.size(); ++k) {
+    const auto& imu = map.keyframes[k].imu;
+    if (!imu || sigmaOf(*imu) <= 0) continue;
+    ++n;
+    records.u64(k), records.f64(sigmaOf(*imu));
+  }
+  if (n == 0) return;
+  out.u64(n);
+  out.append(records);
+}
+
+struct SigmaWords {
+  std::string what, absurd;
+  double below;
+};
+
+/// Each into a copy of its keyframe's IMU.
+template <class Take>
+void decodeSigmas(ByteReader& in, LineMap& map, const SigmaWords& words, Take take) {
+  const std::size_t n = in.count(kSigmaSize);
+  for (std::size_t i = 0; i < n; ++i) {
+    const std::uint64_t k = in.u64();
+    const double sigma = in.f64();
+    if (k >= map.keyframes.size() || !map.keyframes[k].imu)
+      throw ByteReaderError("has " + words.what + " of what has no IMU");
+    if (!(sigma > 0 && sigma < words.below)) throw ByteReaderError("has " + words.what + " " + words.absurd);
+    auto imu = std::make_shared<Preintegration>(*map.keyframes[k].imu);
+    take(sigma, *imu);
+    map.keyframes[k].imu = imu;
+  }
 }
 
 }  // namespace
@@ -95,59 +132,26 @@ void decodeImu(ByteReader& in, LineMap& map) {
 
 /// Of keyframes whose images' stamps are off, by their places.
 void encodeStamps(const LineMap& map, ByteWriter& out) {
-  ByteWriter records;
-  std::uint64_t n = 0;
-  for (std::size_t k = 0; k < map.keyframes.size(); ++k) {
-    const auto& imu = map.keyframes[k].imu;
-    if (!imu || imu->stampSigma() <= 0) continue;
-    ++n;
-    records.u64(k), records.f64(imu->stampSigma());
-  }
-  if (n == 0) return;
-  out.u64(n);
-  out.append(records);
+  encodeSigmas(
+      map, [](const Preintegration& imu) { return imu.stampSigma(); }, out);
 }
 
 void decodeStamps(ByteReader& in, LineMap& map) {
-  const std::size_t n = in.count(kStampSize);
-  for (std::size_t i = 0; i < n; ++i) {
-    const std::uint64_t k = in.u64();
-    const double sigma_s = in.f64();
-    if (k >= map.keyframes.size() || !map.keyframes[k].imu) throw ByteReaderError("has stamps of what has no IMU");
-    if (!(sigma_s > 0 && sigma_s < 1)) throw ByteReaderError("has stamps that are off by no time that can be");
-    auto imu = std::make_shared<Preintegration>(*map.keyframes[k].imu);
-    imu->setStampNoise(sigma_s, Preintegration::Matrix9::Zero());  // the states count it: BatchProblem
-    map.keyframes[k].imu = imu;
-  }
+  decodeSigmas(in, map, {"stamps", "that are off by no time that can be", 1}, [](double sigma_s, Preintegration& imu) {
+    imu.setStampNoise(sigma_s, Preintegration::Matrix9::Zero());  // the states count it: BatchProblem
+  });
 }
 
 /// Of keyframes whose accelerometer has correlated noise, by their places.
 void encodeCorrelated(const LineMap& map, ByteWriter& out) {
-  ByteWriter records;
-  std::uint64_t n = 0;
-  for (std::size_t k = 0; k < map.keyframes.size(); ++k) {
-    const auto& imu = map.keyframes[k].imu;
-    if (!imu || imu->noise().accel_correlated <= 0) continue;
-    ++n;
-    records.u64(k), records.f64(imu->noise().accel_correlated);
-  }
-  if (n == 0) return;
-  out.u64(n);
-  out.append(records);
+  encodeSigmas(
+      map, [](const Preintegration& imu) { return imu.noise().accel_correlated; }, out);
 }
 
 void decodeCorrelated(ByteReader& in, LineMap& map) {
-  constexpr double kMost = 10;  // [m/s^2]
-  const std::size_t n = in.count(kCorrelatedSize);
-  for (std::size_t i = 0; i < n; ++i) {
-    const std::uint64_t k = in.u64();
-    const double sigma = in.f64();
-    if (k >= map.keyframes.size() || !map.keyframes[k].imu) throw ByteReaderError("has noise of what has no IMU");
-    if (!(sigma > 0 && sigma < kMost)) throw ByteReaderError("has noise that no accelerometer has");
-    auto imu = std::make_shared<Preintegration>(*map.keyframes[k].imu);
-    imu->raiseNoise({0, 0, 0, 0, sigma});
-    map.keyframes[k].imu = imu;
-  }
+  decodeSigmas(in, map, {"noise", "that no accelerometer has", 10}, [](double sigma, Preintegration& imu) {
+    imu.raiseNoise({0, 0, 0, 0, sigma});
+  });
 }
 
 /// Of all keyframes, where the offset between the clocks changes.

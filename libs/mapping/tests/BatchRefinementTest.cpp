@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include <functional>
+
 #include "lintel/geometry/Alignment.h"
 #include "lintel/geometry/Rotation.h"
 #include "lintel/mapping/MapBuilder.h"
@@ -423,6 +425,45 @@ TEST_F(BatchRefinementTest, ARecordingThatWasMadeEarlierHasAnOffsetOfItsOwn) {
   EXPECT_TRUE(report.accepted) << report.verdict;
   for (const std::size_t k : {std::size_t{0}, first - 1, first, material_.keyframes.size() - 1})
     EXPECT_NEAR(material_.time_offset_s + material_.keyframes[k].offset_change_s, k < first ? -0.003 : 0, 6e-4) << k;
+}
+
+/// The keyframes' IMU with another error of the accelerometer, by the time since the first one, and with noise.
+void disturb(MapMaterial& material, double correlated, const std::function<Eigen::Vector3d(double)>& error) {
+  ImuNoise noise;
+  noise.accel_correlated = correlated;
+  const std::int64_t start_ns = material.keyframes.front().t_ns;
+  for (RetiredKeyframe& keyframe : material.keyframes) {
+    if (!keyframe.imu) continue;
+    ImuBatch samples = keyframe.imu->samples();
+    for (ImuSample& sample : samples) sample.accel += error(1e-9 * static_cast<double>(sample.t_ns - start_ns));
+    auto imu = std::make_shared<Preintegration>(keyframe.imu->bias(), noise);
+    imu->append(samples);
+    keyframe.imu = imu;
+  }
+}
+
+TEST_F(BatchRefinementTest, AnErrorOfTheAccelerometerThatComesAndGoesIsNoMotion) {
+  const auto error_b = [](double t_s) { return Eigen::Vector3d(std::sin(3 * t_s), 0, std::cos(2 * t_s)) * 0.1; };
+  MapMaterial without = material_;
+  disturb(material_, 0.07, error_b);
+  disturb(without, 0, error_b);
+  EXPECT_TRUE(refine(material_).accepted);
+  refine(without);
+  EXPECT_LT(error(material_), 0.6 * error(without));
+}
+
+TEST_F(BatchRefinementTest, EachRecordingHasAMeanBiasOfItsOwn) {
+  MapMaterial other = material_;
+  const Eigen::Vector3d bias(0.25, -0.2, 0.15);
+  disturb(material_, 0.005, [](double) { return Eigen::Vector3d(0, 0, 0); });
+  disturb(other, 0.005, [&](double) { return bias; });
+  material_.pieces = separatePieces(material_), other.pieces = separatePieces(other);
+  const std::size_t first = material_.keyframes.size();
+  material_.trajectory.clear(), other.trajectory.clear();
+  appendMaterial(other, material_);
+  EXPECT_TRUE(refine(material_).accepted);
+  for (std::size_t k = 0; k < material_.keyframes.size(); ++k)
+    EXPECT_LT((material_.keyframes[k].bias.accel - (k < first ? Eigen::Vector3d(0, 0, 0) : bias)).norm(), 0.04) << k;
 }
 
 TEST_F(BatchRefinementTest, AnOffsetThatStaysIsFoundTheSameAllTheTime) {

@@ -45,6 +45,7 @@ class Preintegration {
   /// Takes what is larger of its noise and this; integrates all samples again when that changes a density.
   void raiseNoise(const ImuNoise& least);
 
+  /// For an interval whose accelerometer is to be taken at its word: its correlated noise becomes zero.
   void leaveOutCorrelatedNoise() { noise_.accel_correlated = 0; }
 
   /// What the covariance has more because the times of both ends are uncertain, by sigma_s each; replaces what was set
