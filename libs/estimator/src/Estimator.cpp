@@ -366,7 +366,8 @@ void Estimator::Impl::dropOldest(WindowUpdate& update) {
   EstimatorParams params = params_;
   if (onTrial() || sigma_->relativeScaleSigma(window_) > kMostScaleSigma)
     params.landmarks.lasting_points = 0;  // they would be linearised at a wrong scale
-  marginaliseOldest(window_, params);
+  const double scale_walk = scale_drift_.unexplainedChange(sigma_->relativeScaleSigma(window_));
+  marginaliseOldest(window_, params, scale_walk);
   retireTracks(window_, leaving, true, update);
   retireKeyframe(window_.frames.front(), update);
   window_.removeFrame(leaving, true);

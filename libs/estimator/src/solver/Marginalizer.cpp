@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "lintel/factors/StateBlocks.h"
 #include "lintel/geometry/SmallMatrices.h"
 #include "solver/InformationRoot.h"
 
@@ -56,6 +57,43 @@ void walk(Eigen::MatrixXd& H, Eigen::VectorXd& b, WorldDrift::Rows& K, const std
   H(rows, Eigen::all) = crossed.transpose();
   b(rows) = w.cwiseProduct(moved);
   K(Eigen::all, rows) = moved_K.transpose() * w.asDiagonal();
+}
+
+/// What a change of the scale about `centre_w` does to a block, in its tangent space.
+Eigen::VectorXd scaleAction(const SlidingWindow& window, const BlockKey& key, const Eigen::Vector3d& centre_w) {
+  Eigen::VectorXd action = Eigen::VectorXd::Zero(manifoldOf(key.kind)->TangentSize());
+  if (key.kind == BlockKey::kPose) action.head<3>() = window.frame(key.id).T_w_b().p - centre_w;
+  if (key.kind == BlockKey::kMotion) action.segment<3>(kVelocityAt) = velocityOf(window.frame(key.id).motion.data());
+  if (key.kind == BlockKey::kPoint) {
+    const PointTrack& track = window.points.at(key.id);
+    PointBlock change = PointBlock::Zero();
+    change.head<3>() = track.point.head<3>() + track.point[3] * (track.origin_w - centre_w);
+    Eigen::Matrix<double, 3, 4, Eigen::RowMajor> tangent_by_point;
+    manifoldOf(key.kind)->MinusJacobian(track.point.data(), tangent_by_point.data());
+    action = tangent_by_point * change;
+  }
+  return action;
+}
+
+/// How the states from block `first` on move when the scale changes about the oldest frame that stays.
+Eigen::VectorXd scaleDirection(const SlidingWindow& window, const NormalEquations& eq, std::size_t first) {
+  const Eigen::Index start = eq.offsets[first];
+  const Eigen::Vector3d centre_w = window.frames[1].T_w_b().p;
+  Eigen::VectorXd direction(eq.H.rows() - start);
+  for (std::size_t i = first; i < eq.blocks.size(); ++i)
+    direction.segment(eq.offsets[i] - start, eq.offsets[i + 1] - eq.offsets[i]) =
+        scaleAction(window, eq.blocks[i], centre_w);
+  return direction;
+}
+
+/// All states move together by `direction` times an amount of this variance.
+void walkTogether(const Eigen::VectorXd& direction, double variance, Eigen::MatrixXd& H, Eigen::VectorXd& b,
+                  WorldDrift::Rows& K) {
+  const Eigen::VectorXd Hd = H * direction;
+  const double known = 1 / variance + direction.dot(Hd);
+  b -= Hd * (direction.dot(b) / known);
+  K -= K * direction * (Hd.transpose() / known);
+  H -= Hd * (Hd.transpose() / known);
 }
 
 double walkOf(const BlockKey& key, const Staying& staying) {
@@ -130,6 +168,8 @@ std::optional<WindowPrior> marginalise(SlidingWindow& window, const std::vector<
     }
   }
   walk(H, b, K, walking, variances);
+  if (staying.scale_walk > 0)
+    walkTogether(scaleDirection(window, eq, kept), staying.scale_walk * staying.scale_walk, H, b, K);
   for (std::size_t i = kept; i < eq.blocks.size(); ++i)
     window.drift.by_state[eq.blocks[i]] = K.middleCols(eq.offsets[i] - start, eq.offsets[i + 1] - eq.offsets[i]);
   LinearResidual root = informationRoot(H, b);

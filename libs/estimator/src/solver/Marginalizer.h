@@ -13,7 +13,8 @@ namespace lintel {
 struct Staying {
   std::set<BlockKey> points;
   double walk_rad = 0;  ///< standard deviation of a point's direction, as from its origin: they slide on their surfaces
-  double bias_walk = 0;  ///< of the mean bias [m/s^2]
+  double bias_walk = 0;   ///< of the mean bias [m/s^2]
+  double scale_walk = 0;  ///< of the logarithm of the scale: of all distances and velocities alike
 };
 
 /// Schur complement [Sibley2010]: what the residuals say about the blocks that stay once those in `dropped` are gone.

@@ -26,22 +26,34 @@ std::vector<Eigen::Vector3d> positionsOf(const SlidingWindow& window) {
 
 }  // namespace
 
-void ScaleDrift::start(double sigma) {
-  sigma_ = sigma;
-  log_change_ = 0;
-}
+void ScaleDrift::start(double sigma) { since_start_ = lately_ = {sigma}; }
 
 void ScaleDrift::beforeSolve(const SlidingWindow& window) { before_ = positionsOf(window); }
 
 void ScaleDrift::afterSolve(const SlidingWindow& window) {
   const double before = extentOf(before_), after = extentOf(positionsOf(window));
-  if (before > 0 && after > 0) log_change_ += std::log(after / before);
+  for (Stretch* stretch : {&since_start_, &lately_}) {
+    ++stretch->solves;
+    if (before > 0 && after > 0) stretch->log_change += std::log(after / before);
+  }
 }
 
 bool ScaleDrift::leftStart() const {
   constexpr double kMostSigmas = 6;  // fair starts reach four, with images whose errors are alike for all tracks 5.6
   constexpr double kLeast = 0.05;    // less does not pay a new start
-  return std::abs(log_change_) > std::max(kLeast, kMostSigmas * sigma_);
+  return std::abs(since_start_.log_change) > std::max(kLeast, kMostSigmas * since_start_.sigma);
+}
+
+double ScaleDrift::unexplainedChange(double sigma) {
+  constexpr double kMostSigmas = 2.5;  // by chance once in eighty
+  constexpr int kSolves = 30;          // twice the time that a window reaches
+  const double change = std::abs(lately_.log_change);
+  if (change > kMostSigmas * std::max(sigma, lately_.sigma)) {
+    lately_ = {std::hypot(sigma, change)};
+    return change;
+  }
+  if (lately_.solves > kSolves) lately_ = {sigma};
+  return 0;
 }
 
 }  // namespace lintel

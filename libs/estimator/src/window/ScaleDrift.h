@@ -9,9 +9,9 @@
 
 namespace lintel {
 
-/// How far solves have changed the scale since a start, against what the start said of it. A start with too little
-/// motion, or with a wrong mounting that is taken for a bias, may be wrong by many of its sigmas; its prior then holds
-/// the scale for long.
+/// How far solves change the scale, against what was said of it. A start with too little motion, or with a wrong
+/// mounting that is taken for a bias, may be wrong by many of its sigmas, and so is a scale that comes from an
+/// accelerometer with errors that last for seconds; a prior then holds the scale for long.
 class ScaleDrift {
  public:
   /// `sigma`: relative, of the start.
@@ -23,9 +23,20 @@ class ScaleDrift {
   /// Whether the scale has changed by what the start's sigma makes impossible.
   bool leftStart() const;
 
+  /// By how much the logarithm of the scale has changed in the last seconds, where neither the sigma that was said then
+  /// nor `sigma`, the present one, explains it; otherwise zero. A change is given once: the sigma said then is enlarged
+  /// by it.
+  double unexplainedChange(double sigma);
+
  private:
-  double sigma_ = std::numeric_limits<double>::infinity();
-  double log_change_ = 0;
+  /// The solves since a sigma was said.
+  struct Stretch {
+    double sigma = std::numeric_limits<double>::infinity();  ///< relative
+    double log_change = 0;
+    int solves = 0;
+  };
+
+  Stretch since_start_, lately_;
   std::vector<Eigen::Vector3d> before_;  // positions of the frames
 };
 

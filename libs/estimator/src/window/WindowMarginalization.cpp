@@ -87,10 +87,12 @@ bool outlives(const PointTrack& track, FrameId leaving, FrameId newest) {
 
 }  // namespace
 
-void marginaliseOldest(SlidingWindow& window, const std::vector<Factor>& measurements, const LandmarkParams& params) {
+void marginaliseOldest(SlidingWindow& window, const std::vector<Factor>& measurements, const LandmarkParams& params,
+                       double scale_walk) {
   Staying staying{lastingPoints(window, measurements, params)};
   const double step_s = 1e-9 * static_cast<double>(window.frames[1].t_ns - window.frames[0].t_ns);
   staying.walk_rad = params.lasting_walk_px * std::sqrt(step_s) / window.camera().meanFocal();
+  staying.scale_walk = scale_walk;
   if (const auto& imu = window.frames[1].imu) staying.bias_walk = imu->noise().accel_walk * std::sqrt(step_s);
   const std::set<BlockKey> leaving = leavingWith(window, window.frames.front(), measurements, staying.points);
   const FrameId newest = window.frames.back().id;
@@ -104,10 +106,10 @@ void marginaliseOldest(SlidingWindow& window, const std::vector<Factor>& measure
   consumeSightings(window.lines, BlockKey::kLine, leaving, newest);
 }
 
-void marginaliseOldest(SlidingWindow& window, const EstimatorParams& params) {
+void marginaliseOldest(SlidingWindow& window, const EstimatorParams& params, double scale_walk) {
   WindowFactors factors(window, params.factors);
   factors.addMeasurements(params);
-  marginaliseOldest(window, factors.factors(), params.landmarks);
+  marginaliseOldest(window, factors.factors(), params.landmarks, scale_walk);
 }
 
 void marginaliseSecondNewest(SlidingWindow& window) {

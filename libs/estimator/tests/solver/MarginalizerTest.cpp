@@ -172,6 +172,55 @@ TEST_F(MarginalizerTest, WhatWalksGainsItsWalkAsCovariance) {
   EXPECT_LT((best(*after->factor) - best(before)).norm(), 1e-9 * best(before).norm());
 }
 
+TEST_F(MarginalizerTest, AScaleThatWalksAddsTheVarianceOfWhatAScaledWindowDiffersBy) {
+  const BlockKey pose{BlockKey::kPose, 3}, motion{BlockKey::kMotion, 2}, correction{BlockKey::kCorrection, 0},
+      point{BlockKey::kPoint, window_.points.begin()->first};
+  const std::vector<BlockKey> keys{motion, pose, correction, point};
+  // the window scaled about its second frame
+  constexpr double kScale = 1 + 1e-6;
+  const Eigen::Vector3d centre_w = window_.frames[1].T_w_b().p;
+  SlidingWindow scaled = window_;
+  for (WindowFrame& frame : scaled.frames) {
+    frame.pose.head<3>() = centre_w + kScale * (frame.T_w_b().p - centre_w);
+    frame.motion.segment<3>(kVelocityAt) *= kScale;
+  }
+  PointTrack& far = scaled.points.begin()->second;
+  far.point.head<3>() =
+      far.point[3] *
+      (centre_w + kScale * (window_.positionOf(window_.points.begin()->second) - centre_w) - far.origin_w);
+  far.point.normalize();
+  Eigen::VectorXd direction;
+  std::vector<PriorBlock> blocks;
+  for (const BlockKey& key : keys) {
+    const auto manifold = manifoldOf(key.kind);
+    Eigen::VectorXd change(manifold->TangentSize());
+    manifold->Minus(scaled.block(key), window_.block(key), change.data());
+    const Eigen::Index at = direction.size();
+    direction.conservativeResize(at + change.size());
+    direction.tail(change.size()) = change / (kScale - 1);
+    blocks.push_back({manifold, Eigen::Map<const Eigen::VectorXd>(window_.block(key), manifold->AmbientSize())});
+  }
+  blocks.back().action = GaugeAction::kPoint;
+  blocks.back().origin_w = window_.points.begin()->second.origin_w;
+  const Eigen::Index n = direction.size();
+  Eigen::MatrixXd A = Eigen::MatrixXd::Identity(n, n);
+  for (Eigen::Index i = 0; i < n; ++i)
+    for (Eigen::Index k = 0; k < n; ++k) A(i, k) += 0.2 * std::sin(1 + 3.7 * i + 1.3 * k * k);
+  const PriorFactor before(blocks, A, Eigen::VectorXd::LinSpaced(n, -1, 1));
+  Staying staying{{point}};
+  staying.scale_walk = 0.3;
+  const auto after = marginalise(window_, {{&before, nullptr, keys}}, {}, staying);
+  ASSERT_TRUE(after);
+  ASSERT_EQ(after->blocks, keys);
+  const Eigen::MatrixXd unit = Eigen::MatrixXd::Identity(n, n);
+  const Eigen::MatrixXd covariance = solved(before.information(), unit) + 0.3 * 0.3 * direction * direction.transpose();
+  EXPECT_LT((solved(after->factor->information(), unit) - covariance).norm(), 1e-5 * covariance.norm());
+  const auto best = [](const PriorFactor& prior) -> Eigen::VectorXd {
+    return solved(prior.information(), prior.root().transpose() * prior.constant());
+  };
+  EXPECT_LT((best(*after->factor) - best(before)).norm(), 1e-5 * best(before).norm());
+}
+
 TEST_F(MarginalizerTest, NothingStaysNothingComes) {
   WindowFactors factors(window_, kParams.factors);
   factors.addGauge();
