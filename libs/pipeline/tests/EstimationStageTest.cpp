@@ -12,7 +12,7 @@
 namespace lintel {
 namespace {
 
-/// A flight whose accelerometer shows something of its turns in the first seconds.
+/// A flight whose accelerometer shows something of its turns in the first second.
 std::vector<TrackedFrame> flightWithWrongBeginning(const Rig& rig, int wrong_frames) {
   TrackSimulationParams params;
   params.duration_s = 8;
@@ -37,7 +37,7 @@ TEST(EstimationStage, PosesOfAWrongStartAreLeftOut) {
   EstimationStage stage(rig, configuration, result);
   std::size_t given = 0, withdrawn = 0, replaced = 0;
   double first_start_s = 0;
-  for (const TrackedFrame& frame : flightWithWrongBeginning(rig, 40)) {
+  for (const TrackedFrame& frame : flightWithWrongBeginning(rig, 24)) {
     const WindowUpdate update = stage.process(frame);
     given += update.hasPose();
     if (update.startWasWrong()) {
