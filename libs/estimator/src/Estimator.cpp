@@ -364,10 +364,10 @@ void Estimator::Impl::dropOldest(WindowUpdate& update) {
   const FrameId leaving = window_.frames.front().id;
   sigma_->holdNext(window_);
   EstimatorParams params = params_;
-  if (onTrial() || sigma_->relativeScaleSigma(window_) > kMostScaleSigma)
+  const double scale_sigma = sigma_->relativeScaleSigma(window_);
+  if (onTrial() || scale_sigma > kMostScaleSigma)
     params.landmarks.lasting_points = 0;  // they would be linearised at a wrong scale
-  const double scale_walk = scale_drift_.unexplainedChange(sigma_->relativeScaleSigma(window_));
-  marginaliseOldest(window_, params, scale_walk);
+  marginaliseOldest(window_, params, scale_drift_.takeUnexplainedChange(scale_sigma));
   retireTracks(window_, leaving, true, update);
   retireKeyframe(window_.frames.front(), update);
   window_.removeFrame(leaving, true);

@@ -44,7 +44,7 @@ bool ScaleDrift::leftStart() const {
   return std::abs(since_start_.log_change) > std::max(kLeast, kMostSigmas * since_start_.sigma);
 }
 
-double ScaleDrift::unexplainedChange(double sigma) {
+double ScaleDrift::takeUnexplainedChange(double sigma) {
   constexpr double kMostSigmas = 2.5;  // by chance once in eighty
   constexpr int kSolves = 30;          // twice the time that a window reaches
   const double change = std::abs(lately_.log_change);

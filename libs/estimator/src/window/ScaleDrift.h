@@ -26,7 +26,7 @@ class ScaleDrift {
   /// By how much the logarithm of the scale has changed in the last seconds, where neither the sigma that was said then
   /// nor `sigma`, the present one, explains it; otherwise zero. A change is given once: the sigma said then is enlarged
   /// by it.
-  double unexplainedChange(double sigma);
+  double takeUnexplainedChange(double sigma);
 
  private:
   /// The solves since a sigma was said.

@@ -45,15 +45,15 @@ TEST(ScaleDrift, AVehicleAtRestHasNoScale) { EXPECT_FALSE(driftOf(0.02, {0, 1, 0
 
 TEST(ScaleDrift, AChangeThatNoSigmaExplainsIsToldOnce) {
   ScaleDrift drift = driftOf(0.01, {1, 1.01, 1.02});
-  EXPECT_EQ(drift.unexplainedChange(0.01), 0) << "2 sigma";
+  EXPECT_EQ(drift.takeUnexplainedChange(0.01), 0) << "2 sigma";
   drift.beforeSolve(pathOf(1.02));
   drift.afterSolve(pathOf(1.03));
-  EXPECT_EQ(drift.unexplainedChange(0.02), 0) << "1.5 of the present sigma";
-  EXPECT_NEAR(drift.unexplainedChange(0.01), std::log(1.03), 1e-12) << "3 sigma";
-  EXPECT_EQ(drift.unexplainedChange(0.01), 0);
+  EXPECT_EQ(drift.takeUnexplainedChange(0.02), 0) << "1.5 of the present sigma";
+  EXPECT_NEAR(drift.takeUnexplainedChange(0.01), std::log(1.03), 1e-12) << "3 sigma";
+  EXPECT_EQ(drift.takeUnexplainedChange(0.01), 0);
   drift.beforeSolve(pathOf(1.03));
   drift.afterSolve(pathOf(1.09));
-  EXPECT_EQ(drift.unexplainedChange(0.01), 0) << "1.8 of the enlarged sigma";
+  EXPECT_EQ(drift.takeUnexplainedChange(0.01), 0) << "1.8 of the enlarged sigma";
 }
 
 TEST(ScaleDrift, ASlowChangeIsExplainedByTheSigmasThatAreSaidMeanwhile) {
@@ -62,7 +62,7 @@ TEST(ScaleDrift, ASlowChangeIsExplainedByTheSigmasThatAreSaidMeanwhile) {
   for (int i = 0; i < 300; ++i) {
     drift.beforeSolve(pathOf(std::pow(1.0005, i)));
     drift.afterSolve(pathOf(std::pow(1.0005, i + 1)));
-    EXPECT_EQ(drift.unexplainedChange(0.01), 0) << i;
+    EXPECT_EQ(drift.takeUnexplainedChange(0.01), 0) << i;
   }
 }
 
