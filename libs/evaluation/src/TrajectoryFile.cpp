@@ -41,4 +41,10 @@ StampedPoses readTrajectory(const std::string& path) {
   return trajectory;
 }
 
+StampedPoses atImageStamps(StampedPoses poses, double time_offset_s) {
+  const std::int64_t offset_ns = std::llround(1e9 * time_offset_s);
+  for (auto& [t_ns, pose] : poses) t_ns -= offset_ns;
+  return poses;
+}
+
 }  // namespace lintel

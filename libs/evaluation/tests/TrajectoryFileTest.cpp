@@ -54,6 +54,12 @@ TEST_F(TrajectoryFile, ReadsEurocStates) {
   EXPECT_DOUBLE_EQ(poses[0].second.q.x(), 0.6);
 }
 
+TEST(AtImageStamps, AnImageWithStampTShowsTheWorldAtTPlusOffset) {
+  const StampedPoses moved = atImageStamps({{1'000'000'000, {}}, {2'000'000'000, {}}}, 0.02);
+  EXPECT_EQ(moved[0].first, 980'000'000);
+  EXPECT_EQ(moved[1].first, 1'980'000'000);
+}
+
 TEST_F(TrajectoryFile, NormalisesRoundedQuaternions) {
   EXPECT_NEAR(readTrajectory(write("a", "1 0 0 0 0 0 0 1.01\n")).at(0).second.q.norm(), 1, 1e-15);
 }

@@ -443,7 +443,9 @@ void disturb(MapMaterial& material, double correlated, const std::function<Eigen
 }
 
 TEST_F(BatchRefinementTest, AnErrorOfTheAccelerometerThatComesAndGoesIsNoMotion) {
-  const auto error_b = [](double t_s) { return Eigen::Vector3d(std::sin(3 * t_s), 0, std::cos(2 * t_s)) * 0.1; };
+  const auto error_b = [](double t_s) -> Eigen::Vector3d {
+    return Eigen::Vector3d(std::sin(3 * t_s), 0, std::cos(2 * t_s)) * 0.1;
+  };
   MapMaterial without = material_;
   disturb(material_, 0.07, error_b);
   disturb(without, 0, error_b);

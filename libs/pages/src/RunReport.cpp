@@ -75,10 +75,11 @@ class Report {
     TrajectoryErrorParams params;
     params.from_ns = result.statistics.first_frame_ns;
     params.to_ns = result.statistics.last_frame_ns;
+    const StampedPoses truth = atImageStamps(record.groundtruth, result.time_offset_s);
     try {
-      errors_ = evaluateTrajectory(poses_, record.groundtruth, params);
-      if (!refined_.empty()) refined_errors_ = evaluateTrajectory(refined_, record.groundtruth, params);
-      if (knowsCovariances()) consistency_ = evaluateConsistency(poses_, covariances(), record.groundtruth, params);
+      errors_ = evaluateTrajectory(poses_, truth, params);
+      if (!refined_.empty()) refined_errors_ = evaluateTrajectory(refined_, truth, params);
+      if (knowsCovariances()) consistency_ = evaluateConsistency(poses_, covariances(), truth, params);
     } catch (const EvaluationError& error) {
       truth_fault_ = error.what();
     }

@@ -100,6 +100,16 @@ TEST(RunReport, ShowsErrorsOnlyWithGroundTruth) {
   EXPECT_THAT(page, HasSubstr("<h1>Run on hall</h1>"));
 }
 
+TEST(RunReport, ErrorsAreThoseAtTheTimesThatImagesShow) {
+  GoodRun run;
+  const std::string right = "0.0000 m, at most 0.0000 m";
+  ASSERT_THAT(runReport(run.record, run.result, run.series), HasSubstr(right));
+  for (auto& [t_ns, pose] : run.record.groundtruth) t_ns += 50'000'000;  // the IMU's clock
+  EXPECT_THAT(runReport(run.record, run.result, run.series), Not(HasSubstr(right)));
+  run.result.time_offset_s = 0.05;
+  EXPECT_THAT(runReport(run.record, run.result, run.series), HasSubstr(right));
+}
+
 TEST(RunReport, ShowsPlacesSeenAgainAndWhyOthersWereRefused) {
   GoodRun run;
   EXPECT_THAT(runReport(run.record, run.result, run.series), Not(HasSubstr("Places seen again"))) << "not looked for";

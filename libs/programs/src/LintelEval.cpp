@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "lintel/programs/LintelEval.h"
 
+#include <cmath>
 #include <filesystem>
 #include <memory>
 #include <optional>
@@ -32,6 +33,8 @@ StampedPoses trajectoryOf(const LineMap& map) {
 }
 
 namespace fs = std::filesystem;
+
+constexpr double kMostTimeOffset_s = 1000;
 
 /// True poses: a TUM or CSV file, or a recording that carries them.
 StampedPoses readTruth(const std::string& path) {
@@ -93,6 +96,12 @@ class LintelEval {
     line_.option("--max-difference", params_.max_difference_s, "A pose and its true partner: at most so far apart [s]")
         .notNegative()
         .showDefault();
+    line_
+        .option("--time-offset", time_offset_s_,
+                "An estimated pose with stamp t is that of the truth's time t + this [s]: poses have the stamps of "
+                "images, and calibration.time_offset_s of stats.json is how the IMU's clock differs from theirs")
+        .range(-kMostTimeOffset_s, kMostTimeOffset_s)
+        .showDefault();
     line_.option("--distances", params_.distances_m, "Stretches of the path for relative errors [m]")
         .positive()
         .separatedBy(',')
@@ -125,13 +134,14 @@ class LintelEval {
     const auto to_ns = comma == std::string::npos ? std::nullopt : nanosecondsOf(between_.substr(comma + 1));
     if (!from_ns || !to_ns || *from_ns >= *to_ns)
       throw UsageError("--between " + between_ + ": must be two times in seconds, as 1403636584.763555584,1403636600");
-    params_.from_ns = *from_ns;
-    params_.to_ns = *to_ns;
+    const std::int64_t offset_ns = std::llround(1e9 * time_offset_s_);
+    params_.from_ns = *from_ns - offset_ns;
+    params_.to_ns = *to_ns - offset_ns;
   }
 
   TrajectoryErrors errorsOf(const std::string& name, const StampedPoses& estimate, const std::string& truth) {
     evaluation_.groundtruth_name = truth;
-    evaluation_.groundtruth = readTruth(truth);
+    evaluation_.groundtruth = atImageStamps(readTruth(truth), time_offset_s_);
     try {
       return evaluateTrajectory(estimate, evaluation_.groundtruth, params_);
     } catch (const EvaluationError& error) {
@@ -204,6 +214,7 @@ class LintelEval {
                     "Errors of a trajectory against its ground truth, and of a line map against the true lines."};
   std::string trajectory_, covariance_, groundtruth_, map_, lines_, alignment_ = "se3", json_, report_, surfaces_,
                                                                     between_;
+  double time_offset_s_ = 0;
   bool quiet_ = false;
   TrajectoryErrorParams params_;
   Evaluation evaluation_;

@@ -74,6 +74,18 @@ TEST_F(LintelEvalProgram, EvaluatesATrajectory) {
   EXPECT_FALSE(json.contains("lines"));
 }
 
+TEST_F(LintelEvalProgram, ATimeOffsetMovesTheEstimatesStamps) {
+  // the truth moves by 1 m/s; the estimate's stamps are 0.5 s late
+  const std::string truth = write("gt.tum", "0 0 0 0 0 0 0 1\n1 1 0 0 0 0 0 1\n2 2 1 0 0 0 0 1\n3 3 0 0 0 0 0 1\n");
+  const std::string estimate =
+      write("est.tum", "0.5 0 0 0 0 0 0 1\n1.5 1 0 0 0 0 0 1\n2.5 2 1 0 0 0 0 1\n3.5 3 0 0 0 0 0 1\n");
+  ASSERT_EQ(run({"--trajectory", estimate, "--groundtruth", truth, "--time-offset", "-0.5", "--between", "1,3"}), 0)
+      << err_.str();
+  EXPECT_THAT(out_.str(), HasSubstr("3 with ground truth"));
+  EXPECT_THAT(out_.str(), HasSubstr("max 0.0000 m"));
+  EXPECT_EQ(run({"--trajectory", estimate, "--groundtruth", truth}), 1) << "no pose within 10 ms";
+}
+
 TEST_F(LintelEvalProgram, CovariancesBesideTheTrajectoryGiveNees) {
   const std::string truth = write("gt.tum", "0 0 0 0 0 0 0 1\n1 1 0 0 0 0 0 1\n2 2 0 0 0 0 0 1\n3 3 0 0 0 0 0 1\n");
   const std::string estimate =

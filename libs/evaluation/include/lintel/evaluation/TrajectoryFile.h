@@ -28,4 +28,8 @@ using StampedPoses = std::vector<std::pair<std::int64_t, Pose>>;
 /// Throws EvaluationError on an unreadable file, a malformed row, or a time that goes back.
 StampedPoses readTrajectory(const std::string& path);
 
+/// Poses whose times are another clock's (the IMU's, as in EuRoC's ground truth), with the stamps that images of these
+/// times have: an image with stamp t shows the world at t + `time_offset_s`.
+StampedPoses atImageStamps(StampedPoses poses, double time_offset_s);
+
 }  // namespace lintel
