@@ -6,6 +6,7 @@
 #include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <limits>
 #include <optional>
 
@@ -33,14 +34,23 @@ constexpr double kKnownDistortion = 0.02;
 // A start with k1 and k2 free is taken when it leaves less than this share of the squared residuals.
 constexpr double kClearlyBetter = 0.6;
 // An adjustment is left when the scale is less certain than asked for by this factor, before it and after its first
-// round: what is left of it changes the scale's sigma by less.
-constexpr double kHopelessBefore = 3, kHopelessAfterFirst = 2;
+// rounds: what is left of it changes the scale's sigma by less.
+constexpr double kHopelessBefore = 3, kHopelessAfter[] = {2, 1.5};
 constexpr char kScaleUnknown[] = "waiting for a motion that shows the scale";
 // A start whose median error is less than this share of the points' sigma is in the deepest minimum: in others errors
 // are those of a wrong geometry.
 constexpr double kUnambiguous = 0.5;
 constexpr double kSomeAgree = 0.3;  // of the points: with fewer it is not the scale that is wrong
 constexpr double kOtherScales[] = {0.5, 0.7, 1.4, 2};
+
+/// The first adjustments only have to show which points fit. The last one goes on to the minimum: along the scale, with
+/// biases and velocities that follow it, steps lower the cost by less than the window's solver goes on for, while the
+/// scale still changes by tenths.
+SolveLimits limitsOf(bool last_round) {
+  SolveLimits limits{last_round ? 50 : 20};
+  if (last_round) limits.tolerance = 1e-5;
+  return limits;
+}
 
 /// Parallax from the oldest frame that shares enough points with the newest: where tracks are short none is shared with
 /// the first.
@@ -245,7 +255,9 @@ bool Initializer::adjust(const CalibrationParams& calibration, Gates gates, Slid
   LandmarkParams loose = params_.landmarks;
   // The first poses are rough: their errors are angles, and so are these limits.
   const double scale = pixelScale(window.camera());
-  for (int round = 0; round < 3; ++round) {
+  constexpr int kRounds = 3;
+  static_assert(std::size(kHopelessAfter) == kRounds - 1);
+  for (int round = 0; round < kRounds; ++round) {
     loose.point_max_error_px = round == 0 ? 30 * scale : round == 1 ? 8 * scale : params_.landmarks.point_max_error_px;
     triangulatePoints(window, loose, params_.factors.point_sigma_px);
     if (gated && round == 0 && !scaleWithin(kHopelessBefore, window)) return false;
@@ -255,7 +267,7 @@ bool Initializer::adjust(const CalibrationParams& calibration, Gates gates, Slid
     factors.addPoints();
     factors.addGauge();
     if (frozen.refine_time_offset || frozen.refine_camera) factors.addCalibrationPriors(frozen, T_b_c_calibrated_);
-    solveWindow(window, factors.factors(), frozen, {20});
+    solveWindow(window, factors.factors(), frozen, limitsOf(round + 1 == kRounds));
     window.relinearise();
     loose.point_max_error_px = round == 0 ? 8 * scale : params_.landmarks.point_max_error_px;
     const CameraPoses poses(window);
@@ -264,7 +276,7 @@ bool Initializer::adjust(const CalibrationParams& calibration, Gates gates, Slid
     for (WindowFrame& frame : window.frames)
       if (frame.imu) frame.imu->repropagate(biasOf(frame.motion.data()));
     countStampJitter(window.stamp_sigma_s, window);
-    if (gated && round == 0 && !scaleWithin(kHopelessAfterFirst, window)) return false;
+    if (gated && round + 1 < kRounds && !scaleWithin(kHopelessAfter[round], window)) return false;
   }
   return true;
 }

@@ -12,8 +12,6 @@ namespace {
 
 // From Gauss-Newton to next to no step.
 constexpr double kFirstDamping = 1e-4, kLeastDamping = 1e-12, kMostDamping = 1e8;
-// The next frame goes on from here: with 1e-3 the window takes a fifth more steps, and trajectories are no better.
-constexpr double kTolerance = 3e-3;
 constexpr double kLeastGain = 1e-3;  // of the decrease that the model promised
 
 }  // namespace
@@ -56,7 +54,7 @@ SolveSummary solveWindow(SlidingWindow& window, const std::vector<Factor>& facto
     }
     // A step that rejections have damped is short wherever the minimum lies.
     const bool settled = damping <= kFirstDamping && system.statesMove() < limits.min_move;
-    const bool converged = settled || cost - moved_cost < kTolerance * cost;
+    const bool converged = settled || cost - moved_cost < limits.tolerance * cost;
     cost = moved_cost;
     if (converged) break;
     damping = std::max(kLeastDamping, damping * std::max(1.0 / 3, 1 - std::pow(2 * gain - 1, 3)));

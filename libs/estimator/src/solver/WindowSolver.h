@@ -20,6 +20,9 @@ struct SolveLimits {
   int max_iterations = 8;
   double min_move = 0;  ///< of the states by a step, see ReducedSystem::statesMove; landmarks may still be on their way
   bool information = false;  ///< whether SolveSummary::information is wanted
+  /// Relative decrease of the cost by a step after which no other is worth it. The window's next frame goes on from
+  /// here: with 1e-3 it takes a fifth more steps, and trajectories are no better.
+  double tolerance = 3e-3;
 };
 
 /// Makes constants of what is not refined of the calibration.
