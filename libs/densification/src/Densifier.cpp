@@ -3,10 +3,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <set>
 
 #include "CommonViews.h"
 #include "LineSearch.h"
+#include "PointDepths.h"
 #include "RowTimes.h"
 #include "lintel/core/ParallelFor.h"
 #include "lintel/core/Quantiles.h"
@@ -22,6 +24,7 @@ constexpr std::size_t kLeastKnown = 20;  // lines of the map whose errors say wh
 constexpr double kUnusualShare = 0.4;    // of the map's limit, for the errors of lines where too few are known
 
 constexpr double kFittedShare = 0.5;  // of the tolerance: what a fitted line needs less than a candidate
+constexpr int kLeastTold = 2;         // images that tell whether a place is hidden
 constexpr double kChanceMore = 0.15;  // images: what chance may cover although it was not seen to
 
 /// An edge of an image.
@@ -52,6 +55,7 @@ class Densifier {
       place_.emplace(keyframe.id, views_.size());
       views_.emplace_back(cameras_, keyframe.id, std::move(segments));
     }
+    depths_.emplace(material, views_);
     common_ = findCommonViews(material, static_cast<std::size_t>(params.views), views_);
     for (const SegmentView& view : views_) report_.segments += view.size();
     report_.images = views_.size();
@@ -177,6 +181,17 @@ class Densifier {
     return line;
   }
 
+  /// Whether an end or the middle lies behind what most of the images that seem to have the line see there.
+  bool isHidden(const Segment3& segment_w, const std::vector<std::size_t>& supporting) const {
+    for (const Eigen::Vector3d& p_w : {segment_w.start, segment_w.end, segment_w.midpoint()}) {
+      int told = 0, behind = 0;
+      for (const std::size_t v : supporting)
+        if (const std::optional<bool> is_behind = depths_->isBehind(v, p_w)) ++told, behind += *is_behind ? 1 : 0;
+      if (told >= kLeastTold && 2 * behind > told) return true;
+    }
+    return false;
+  }
+
   /// Whether enough images, from places far enough apart, have it, and would not by chance.
   bool isSupported(const LineRecord& line, const Segment3& segment_w, std::size_t i, const EdgeLook& look) const {
     const auto planeOf = [&](std::size_t v) {
@@ -187,6 +202,7 @@ class Densifier {
     int visible = 0, supporters = 0;
     double chance = 0, cover = 0;
     std::vector<double> sines;
+    std::vector<std::size_t> supporting;
     std::vector<std::size_t> among = common_[i].chosen;
     among.push_back(i);
     for (const std::size_t v : among) {
@@ -197,9 +213,11 @@ class Densifier {
       chance += chanceOf(views_[v], seen, tolerance_px, look);
       if (support.cover < params_.least_cover) continue;
       ++supporters;
+      supporting.push_back(v);
       cover += support.cover;
       sines.push_back(own.cross(planeOf(v)).norm());
     }
+    if (isHidden(segment_w, supporting)) return false;
     if (supporters < params_.min_keyframes || cover < params_.least_share * visible) return false;
     std::sort(sines.begin(), sines.end(), std::greater<>());
     if (sines[2] < std::sin(params_.min_parallax_rad)) return false;
@@ -216,6 +234,7 @@ class Densifier {
   std::vector<SegmentView> views_;
   std::map<FrameId, std::size_t> place_;  ///< of a keyframe among the views
   std::vector<CommonViews> common_;
+  std::optional<PointDepths> depths_;
   TrackId next_id_ = 0;
   double most_error_px_ = 0;
   DensifyReport report_;

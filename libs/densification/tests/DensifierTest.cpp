@@ -72,6 +72,19 @@ TEST_F(DensifierTest, AFenceGetsItsOwnPickets) {
   }
 }
 
+TEST_F(DensifierTest, NoLineReachesBehindWhatItsImagesShow) {
+  const Segment3 segment{{-0.5, -0.3, 5}, {0.8, 0.4, 9}};
+  flight_.show(segment);
+  EXPECT_EQ(densify().lines, 0) << "its end is 4 m behind the wall";
+  for (std::size_t i = 0; i < flight_.material.points.size(); i += 2) {  // as through a window
+    PointRecord& point = flight_.material.points[i];
+    point.p_w *= 2;
+    for (std::size_t k = 0; k < point.views.size(); ++k)
+      point.views[k].px = flight_.pixelOf(flight_.material.keyframes[k], point.p_w);
+  }
+  EXPECT_EQ(densify().lines, 1);
+}
+
 TEST_F(DensifierTest, ALineOfTheMapGetsViewsAndNoTwin) {
   const Segment3 segment{{-0.5, -0.3, 4.5}, {0.6, 0.2, 4.8}};
   flight_.show(segment);
