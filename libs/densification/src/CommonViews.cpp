@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <map>
-#include <unordered_map>
 
 #include "lintel/core/Quantiles.h"
 
@@ -14,31 +13,6 @@ namespace {
 constexpr std::size_t kLeastShared = 8;            // points
 constexpr double kLeastShare = 0.1;                // of the points of the view that sees fewer
 constexpr double kNearest = 0.4, kFarthest = 2.5;  // of the nearest and farthest points
-
-/// Which views see each point, and each view's points' distances.
-struct Seen {
-  std::vector<std::vector<std::size_t>> by_point;
-  std::vector<std::vector<double>> distances_m;  // by view
-};
-
-Seen seenBy(const MapMaterial& material, const std::vector<SegmentView>& views) {
-  std::unordered_map<FrameId, std::size_t> place;
-  for (std::size_t v = 0; v < views.size(); ++v) place.emplace(views[v].keyframe, v);
-  Seen seen;
-  seen.distances_m.resize(views.size());
-  for (const PointRecord& point : material.points) {
-    if (!point.known) continue;
-    std::vector<std::size_t> by;
-    for (const PointView& v : point.views) {
-      const auto found = place.find(v.keyframe);
-      if (!v.inlier || found == place.end()) continue;
-      by.push_back(found->second);
-      seen.distances_m[found->second].push_back((point.p_w - views[found->second].p_w_c).norm());
-    }
-    seen.by_point.push_back(std::move(by));
-  }
-  return seen;
-}
 
 /// Of `among` so many that each is as far as possible from those before, beginning with `from`.
 std::vector<std::size_t> spread(const std::vector<SegmentView>& views, std::size_t from,
@@ -62,24 +36,22 @@ std::vector<std::size_t> spread(const std::vector<SegmentView>& views, std::size
 
 }  // namespace
 
-std::vector<CommonViews> findCommonViews(const MapMaterial& material, std::size_t most,
-                                         std::vector<SegmentView>& views) {
-  Seen seen = seenBy(material, views);
+std::vector<CommonViews> findCommonViews(const SeenPoints& points, std::size_t most, std::vector<SegmentView>& views) {
   std::vector<std::map<std::size_t, std::size_t>> shared(views.size());
-  for (const std::vector<std::size_t>& by : seen.by_point)
+  for (const std::vector<std::size_t>& by : points.viewsByPoint())
     for (const std::size_t a : by)
       for (const std::size_t b : by)
         if (a != b) ++shared[a][b];
   std::vector<CommonViews> common(views.size());
   for (std::size_t v = 0; v < views.size(); ++v) {
-    std::vector<double>& distances = seen.distances_m[v];
+    std::vector<double> distances = points.distances_m(v);
     if (distances.size() < kLeastShared) continue;
     std::sort(distances.begin(), distances.end());
     views[v].near_m = kNearest * distances[distances.size() / 20];
     views[v].far_m = kFarthest * distances[distances.size() * 19 / 20];
     std::vector<std::size_t> among;
     for (const auto& [other, n] : shared[v]) {
-      const auto fewer = static_cast<double>(std::min(distances.size(), seen.distances_m[other].size()));
+      const auto fewer = static_cast<double>(std::min(distances.size(), points.distances_m(other).size()));
       if (n >= kLeastShared && static_cast<double>(n) >= kLeastShare * fewer) among.push_back(other);
     }
     common[v].chosen = spread(views, v, among, most);

@@ -3,6 +3,7 @@
 
 #include <vector>
 
+#include "SeenPoints.h"
 #include "SegmentView.h"
 
 namespace lintel {
@@ -14,7 +15,6 @@ struct CommonViews {
 };
 
 /// The common views of each view. Sets the views' depths as well.
-std::vector<CommonViews> findCommonViews(const MapMaterial& material, std::size_t most,
-                                         std::vector<SegmentView>& views);
+std::vector<CommonViews> findCommonViews(const SeenPoints& points, std::size_t most, std::vector<SegmentView>& views);
 
 }  // namespace lintel

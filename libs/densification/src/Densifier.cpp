@@ -8,8 +8,8 @@
 
 #include "CommonViews.h"
 #include "LineSearch.h"
-#include "PointDepths.h"
 #include "RowTimes.h"
+#include "SeenPoints.h"
 #include "lintel/core/ParallelFor.h"
 #include "lintel/core/Quantiles.h"
 #include "lintel/mapping/LineEvidence.h"
@@ -55,8 +55,8 @@ class Densifier {
       place_.emplace(keyframe.id, views_.size());
       views_.emplace_back(cameras_, keyframe.id, std::move(segments));
     }
-    depths_.emplace(material, views_);
-    common_ = findCommonViews(material, static_cast<std::size_t>(params.views), views_);
+    points_.emplace(material, views_);
+    common_ = findCommonViews(*points_, static_cast<std::size_t>(params.views), views_);
     for (const SegmentView& view : views_) report_.segments += view.size();
     report_.images = views_.size();
     for (const LineRecord& line : material.lines) next_id_ = std::max(next_id_, line.id + 1);
@@ -186,7 +186,7 @@ class Densifier {
     for (const Eigen::Vector3d& p_w : {segment_w.start, segment_w.end, segment_w.midpoint()}) {
       int told = 0, behind = 0;
       for (const std::size_t v : supporting)
-        if (const std::optional<bool> is_behind = depths_->isBehind(v, p_w)) ++told, behind += *is_behind ? 1 : 0;
+        if (const std::optional<bool> is_behind = points_->isBehind(v, p_w)) ++told, behind += *is_behind ? 1 : 0;
       if (told >= kLeastTold && 2 * behind > told) return true;
     }
     return false;
@@ -199,7 +199,7 @@ class Densifier {
     };
     const double tolerance_px = kFittedShare * params_.tolerance_px;
     const Eigen::Vector3d own = planeOf(i);
-    int visible = 0, supporters = 0;
+    int visible = 0;
     double chance = 0, cover = 0;
     std::vector<double> sines;
     std::vector<std::size_t> supporting;
@@ -212,15 +212,14 @@ class Densifier {
       ++visible;
       chance += chanceOf(views_[v], seen, tolerance_px, look);
       if (support.cover < params_.least_cover) continue;
-      ++supporters;
       supporting.push_back(v);
       cover += support.cover;
       sines.push_back(own.cross(planeOf(v)).norm());
     }
-    if (isHidden(segment_w, supporting)) return false;
+    const int supporters = static_cast<int>(supporting.size());
     if (supporters < params_.min_keyframes || cover < params_.least_share * visible) return false;
     std::sort(sines.begin(), sines.end(), std::greater<>());
-    if (sines[2] < std::sin(params_.min_parallax_rad)) return false;
+    if (sines[2] < std::sin(params_.min_parallax_rad) || isHidden(segment_w, supporting)) return false;
     // two views determine the line; the others might have agreed by chance
     const double p = (chance + kChanceMore) / visible;
     return binomialTail(supporters - 2, visible - 2, p) <= params_.max_chance;
@@ -233,8 +232,8 @@ class Densifier {
   LineFitParams fit_;
   std::vector<SegmentView> views_;
   std::map<FrameId, std::size_t> place_;  ///< of a keyframe among the views
+  std::optional<SeenPoints> points_;
   std::vector<CommonViews> common_;
-  std::optional<PointDepths> depths_;
   TrackId next_id_ = 0;
   double most_error_px_ = 0;
   DensifyReport report_;

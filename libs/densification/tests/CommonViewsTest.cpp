@@ -17,7 +17,7 @@ class CommonViewsTest : public testing::Test {
     views_.clear();
     for (const RetiredKeyframe& k : flight_.material.keyframes)
       views_.emplace_back(cameras, k.id, flight_.edges[k.t_ns]);
-    return findCommonViews(flight_.material, most, views_);
+    return findCommonViews(SeenPoints(flight_.material, views_), most, views_);
   }
 
   test::TestFlight flight_{12};

@@ -43,9 +43,9 @@ constexpr double kUnambiguous = 0.5;
 constexpr double kSomeAgree = 0.3;  // of the points: with fewer it is not the scale that is wrong
 constexpr double kOtherScales[] = {0.5, 0.7, 1.4, 2};
 
-/// The first adjustments only have to show which points fit. The last one goes on to the minimum: along the scale, with
-/// biases and velocities that follow it, steps lower the cost by less than the window's solver goes on for, while the
-/// scale still changes by tenths.
+/// The first rounds only have to show which points fit. The last one goes on to the minimum: along the scale, with the
+/// biases and velocities that follow it, steps may lower the cost by less than the window's tolerance and yet change
+/// the scale by tenths in all.
 SolveLimits limitsOf(bool last_round) {
   SolveLimits limits{last_round ? 50 : 20};
   if (last_round) limits.tolerance = 1e-5;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "PointDepths.h"
+#include "SeenPoints.h"
 
 #include <algorithm>
 #include <cmath>
@@ -17,7 +17,7 @@ constexpr double kClearlyFarther = 1.3;  // than the farthest of these: points l
 
 }  // namespace
 
-PointDepths::PointDepths(const MapMaterial& material, const std::vector<SegmentView>& views) : by_view_(views.size()) {
+SeenPoints::SeenPoints(const MapMaterial& material, const std::vector<SegmentView>& views) : by_view_(views.size()) {
   std::unordered_map<FrameId, std::size_t> place;
   for (std::size_t v = 0; v < views.size(); ++v) {
     place.emplace(views[v].keyframe, v);
@@ -25,26 +25,28 @@ PointDepths::PointDepths(const MapMaterial& material, const std::vector<SegmentV
   }
   for (const PointRecord& point : material.points) {
     if (!point.known) continue;
+    std::vector<std::size_t> by;
     for (const PointView& view : point.views) {
       const auto found = place.find(view.keyframe);
       if (!view.inlier || found == place.end()) continue;
+      by.push_back(found->second);
       Points& points = by_view_[found->second];
       const Eigen::Vector3d ray = point.p_w - points.p_w_c;
-      const double distance = ray.norm();
-      if (!(distance > 0)) continue;
-      points.rays_w.emplace_back(ray / distance);
-      points.distances_m.push_back(distance);
+      points.rays_w.push_back(ray.normalized());
+      points.distances_m.push_back(ray.norm());
     }
+    views_by_point_.push_back(std::move(by));
   }
 }
 
-std::optional<bool> PointDepths::isBehind(std::size_t view, const Eigen::Vector3d& p_w) const {
+std::optional<bool> SeenPoints::isBehind(std::size_t view, const Eigen::Vector3d& p_w) const {
   const Points& points = by_view_[view];
   const Eigen::Vector3d ray = p_w - points.p_w_c;
   const double distance = ray.norm();
+  const double least_cosine = std::cos(kAround_rad);
   std::vector<std::pair<double, double>> around;  // cosine, negative: nearest first; distance
   for (std::size_t i = 0; i < points.rays_w.size(); ++i)
-    if (const double cosine = points.rays_w[i].dot(ray) / distance; cosine > std::cos(kAround_rad))
+    if (const double cosine = points.rays_w[i].dot(ray) / distance; cosine > least_cosine)
       around.emplace_back(-cosine, points.distances_m[i]);
   if (around.size() < kLeastPoints) return std::nullopt;
   std::sort(around.begin(), around.end());
