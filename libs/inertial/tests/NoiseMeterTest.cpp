@@ -12,8 +12,9 @@ namespace {
 constexpr double kRate_hz = 200;
 const ImuNoise kTrue{2e-4, 2e-5, 2e-3, 3e-3};
 
-/// Batches of 0.1 s of a hand-held motion with white noise, and vibration of an amplitude [m/s^2] from a time on.
-NoiseMeter measure(double duration_s, double vibration = 0, double vibrates_from_s = 0) {
+/// Batches of 0.1 s of a hand-held motion with white noise, vibration of an amplitude [m/s^2] from a time on, and a
+/// walker's steps of another.
+NoiseMeter measure(double duration_s, double vibration = 0, double vibrates_from_s = 0, double steps = 0) {
   std::mt19937 random(3);
   std::normal_distribution<double> normal;
   const auto noise = [&](double density) -> Eigen::Vector3d {
@@ -23,15 +24,18 @@ NoiseMeter measure(double duration_s, double vibration = 0, double vibrates_from
   NoiseMeter meter;
   ImuBatch batch;
   for (int i = 0; i < duration_s * kRate_hz; ++i) {
-    const double t = i / kRate_hz, shake = t >= vibrates_from_s ? vibration * std::sin(2 * M_PI * 83 * t) : 0;
+    const double t = i / kRate_hz, shake = t >= vibrates_from_s ? vibration * std::sin(2 * M_PI * 83 * t) : 0,
+                 step = steps * (std::sin(2 * M_PI * 2 * t) + 0.1 * std::sin(2 * M_PI * 4 * t + 1));
     ImuSample sample;
     sample.t_ns = std::llround(1e9 * t);
-    sample.gyro = Eigen::Vector3d(0.3 * std::sin(3 * t), 0.2 * std::cos(4 * t), 0.02) + noise(kTrue.gyro_noise);
-    sample.accel = Eigen::Vector3d(0.5 * std::cos(4 * t), shake, 9.8 + std::sin(2 * t)) + noise(kTrue.accel_noise);
+    sample.gyro =
+        Eigen::Vector3d(0.3 * std::sin(3 * t), 0.2 * std::cos(4 * t), 0.02 + 0.1 * step) + noise(kTrue.gyro_noise);
+    sample.accel =
+        Eigen::Vector3d(0.5 * std::cos(4 * t), shake, 9.8 + std::sin(2 * t) + step) + noise(kTrue.accel_noise);
     batch.push_back(sample);
-    if (batch.size() == 20) {
+    if (batch.size() == 22) {
       meter.add(batch);
-      batch.assign(1, sample);
+      batch.erase(batch.begin(), batch.end() - 2);  // the first and the last of a batch do not count
     }
   }
   return meter;
@@ -75,6 +79,14 @@ TEST(NoiseMeter, WhiteNoiseIsKnownFromVibrationAndMotion) {
   ASSERT_TRUE(shaken.whiteGyro());
   EXPECT_FALSE(shaken.whiteAccel()) << "vibration at 83 Hz has another density in means of four samples";
   EXPECT_FALSE(measure(0.4).whiteGyro()) << "it may be chance";
+}
+
+TEST(NoiseMeter, StepsDoNotHideWhiteNoise) {
+  const NoiseMeter walking = measure(3, 0, 0, 4);
+  ASSERT_TRUE(walking.whiteGyro());
+  ASSERT_TRUE(walking.whiteAccel());
+  EXPECT_NEAR(*walking.whiteGyro(), kTrue.gyro_noise, 0.15 * kTrue.gyro_noise);
+  EXPECT_NEAR(*walking.whiteAccel(), kTrue.accel_noise, 0.15 * kTrue.accel_noise);
 }
 
 TEST(EffectiveNoise, ADataSheetThatUnderstatesWhiteNoiseIsCorrected) {

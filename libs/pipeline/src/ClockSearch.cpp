@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <tuple>
 #include <vector>
 
 namespace lintel {
@@ -14,10 +15,10 @@ constexpr double kLongest_s = 5;  // of turning; and the tracks that are compare
 constexpr double kFirstTry_s = 1.5, kTryGrowth = 1.5, kTriesApart_s = 2.5;
 constexpr double kNewTurning_s = 0.3;  // since the last try, for another one
 constexpr double kImuBefore_s = 2 * kLargestClockOffset_s;
-constexpr double kGoodSigma_s = 0.002;
-constexpr double kLeftToEstimator_s = 0.005;  // its model is linear in the offset
-constexpr double kSignificant = 4;            // standard deviations
-constexpr double kLeastTurn_rad_s = 0.03;     // slower turns show the offset to tens of milliseconds only
+constexpr double kGoodSigma_s = 0.004;
+constexpr double kRightShare = 0.5;        // of recordings, whose stamps are right
+constexpr double kSureShare = 0.8;         // from which they are left as they are
+constexpr double kLeastTurn_rad_s = 0.03;  // slower turns show the offset to tens of milliseconds only
 constexpr std::size_t kMostHeld_bytes = std::size_t{1} << 29;  // of images while the camera is still
 
 std::size_t bytesOf(const Frame& frame) { return frame.image ? frame.image->pixels.size() : 0; }
@@ -32,6 +33,26 @@ template <class Item>
 void eraseBefore(std::int64_t t_ns, std::vector<Item>& items) {
   const auto earlier = [t_ns](const Item& item) { return item.t_ns < t_ns; };
   items.erase(items.begin(), std::find_if_not(items.begin(), items.end(), earlier));
+}
+
+double normalDensity(double x, double sigma) {
+  return std::exp(-0.5 * x * x / (sigma * sigma)) / (std::sqrt(2 * M_PI) * sigma);
+}
+
+/// What is known of the offset after the search: the stamps are right to `stamp_sigma_s`, or any offset within the
+/// range is as likely as another. The likelier of both is taken, with a standard deviation that covers the other.
+void weigh(double stamp_sigma_s, ClockSearch& search) {
+  search.sigma_s = stamp_sigma_s;
+  if (!search.clock.determined) return;
+  const double found_s = search.clock.offset_s, variance = search.clock.sigma_s * search.clock.sigma_s,
+               stamp_variance = stamp_sigma_s * stamp_sigma_s;
+  const double right = kRightShare * normalDensity(found_s, std::sqrt(variance + stamp_variance)),
+               wrong = (1 - kRightShare) / (2 * kLargestClockOffset_s), share = right / (right + wrong);
+  if (share > kSureShare) return;
+  const double near_s = found_s * stamp_variance / (variance + stamp_variance),
+               near_sigma_s = std::sqrt(variance * stamp_variance / (variance + stamp_variance));
+  std::tie(search.offset_s, search.sigma_s) =
+      likelierAndSigma(share, near_s, near_sigma_s, found_s, search.clock.sigma_s);
 }
 
 /// The tracks of the last kLongest_s, and the IMU samples around them.
@@ -50,10 +71,12 @@ struct Newest {
 
 }  // namespace
 
-ClockSearch searchClock(TrackingStage& tracking, const Rig& rig, const std::function<bool()>& cancelled) {
+ClockSearch searchClock(TrackingStage& tracking, const Rig& rig, double stamp_sigma_s,
+                        const std::function<bool()>& cancelled) {
   ClockSearch search;
   Newest newest;
-  double next_try_s = kFirstTry_s, turning_s = 0, compared_s = 0;  // of turning, when tracks were compared last
+  double next_try_s = kFirstTry_s, tried_s = 0;
+  double turning_s = 0, compared_s = 0;  // when tracks were compared last
   std::size_t held_bytes = 0;
   while (!(cancelled && cancelled())) {
     auto frame = tracking.next();
@@ -68,14 +91,15 @@ ClockSearch searchClock(TrackingStage& tracking, const Rig& rig, const std::func
     if (t_s < kLongest_s || turning_s > compared_s + kNewTurning_s) {
       compared_s = turning_s;
       const ClockOffset clock = findClockOffset(newest.tracks, newest.imu, rig);
-      if (clock.determined && (!search.clock.determined || clock.sigma_s < search.clock.sigma_s)) search.clock = clock;
+      const bool knows_more = tried_s < kLongest_s;  // than the last try, whose tracks it has
+      if (clock.determined && (knows_more || !search.clock.determined || clock.sigma_s < search.clock.sigma_s))
+        search.clock = clock;
+      tried_s = t_s;
     }
     if (search.clock.determined && (t_s >= kLongest_s || search.clock.sigma_s < kGoodSigma_s)) break;
     if (t_s >= kLongest_s && (turning_s >= kLongest_s || held_bytes > kMostHeld_bytes)) break;
   }
-  const ClockOffset& clock = search.clock;
-  if (clock.determined && std::abs(clock.offset_s) > kLeftToEstimator_s + kSignificant * clock.sigma_s)
-    search.offset_s = clock.offset_s;
+  weigh(stamp_sigma_s, search);
   return search;
 }
 

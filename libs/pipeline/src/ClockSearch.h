@@ -14,13 +14,15 @@ namespace lintel {
 struct ClockSearch {
   std::deque<TrackedFrame> frames;  ///< that the search has taken from tracking
   ClockOffset clock;                ///< the best determined one
-  double offset_s = 0;  ///< to correct the stamps by; 0 where the images' stamps are good to some milliseconds
+  double offset_s = 0;              ///< to correct the stamps by; 0 where they are likely to be right
+  double sigma_s = 0;               ///< of what remains then
 };
 
 /// Looks at the tracks until the offset is determined, at most for five seconds in which the camera turns: before,
 /// while it lies still, nothing shows the offset. It ends, too, when the images of more than five seconds take half a
-/// gigabyte. Offsets that the estimator finds by itself, from its first frames on, are left to it. `cancelled` is asked
-/// before every frame and may be empty.
-ClockSearch searchClock(TrackingStage& tracking, const Rig& rig, const std::function<bool()>& cancelled = {});
+/// gigabyte. `stamp_sigma_s` is the standard deviation of the offset where the stamps are right, as most recordings'
+/// are. `cancelled` is asked before every frame and may be empty.
+ClockSearch searchClock(TrackingStage& tracking, const Rig& rig, double stamp_sigma_s,
+                        const std::function<bool()>& cancelled = {});
 
 }  // namespace lintel

@@ -59,9 +59,11 @@ void trackOnItsOwnThread(TrackingStage& tracking, const FrameTaker& take) {
 /// to be corrected, and only handed on where they are good.
 class Tracking {
  public:
-  Tracking(Recording& recording, const FrontEndParams& params, OdometryResult& result,
+  Tracking(Recording& recording, const Configuration& configuration, OdometryResult& result,
            const std::function<bool()>& cancelled)
-      : stage_(std::in_place, recording, params, result), search_(searchClock(*stage_, recording.rig(), cancelled)) {
+      : stage_(std::in_place, recording, configuration.tracking, result),
+        search_(
+            searchClock(*stage_, recording.rig(), configuration.estimator.calibration.time_offset_sigma_s, cancelled)) {
     if (search_.offset_s == 0) {
       stage_->giveAgain(std::move(search_.frames));
       return;
@@ -73,7 +75,7 @@ class Tracking {
     shifted_.emplace(recording, std::move(read), search_.offset_s, fault);
     result.error.clear();
     result.statistics.decoding = result.statistics.tracking = StageClock();
-    stage_.emplace(*shifted_, params, result);
+    stage_.emplace(*shifted_, configuration.tracking, result);
   }
 
   TrackingStage& stage() { return *stage_; }
@@ -85,10 +87,17 @@ class Tracking {
   ClockSearch search_;
 };
 
-/// The configuration, the time offset only as well known as the search has found it.
+/// The rig with the readout that the search has found.
+Rig withReadout(Rig rig, const ClockSearch& search) {
+  if (search.clock.readout_sigma_s > 0) rig.line_delay_s = search.clock.readout_s / rig.camera.height;
+  return rig;
+}
+
+/// The configuration, time offset and readout only as well known as the search has found them.
 Configuration withClock(Configuration configuration, const ClockSearch& search) {
-  double& sigma_s = configuration.estimator.calibration.time_offset_sigma_s;
-  if (search.offset_s != 0) sigma_s = std::max(sigma_s, search.clock.sigma_s);
+  CalibrationParams& calibration = configuration.estimator.calibration;
+  calibration.time_offset_sigma_s = std::max(calibration.time_offset_sigma_s, search.sigma_s);
+  calibration.readout_sigma_s = std::max(calibration.readout_sigma_s, search.clock.readout_sigma_s);
   return configuration;
 }
 
@@ -114,12 +123,13 @@ OdometryResult runOdometry(Recording& recording, const Configuration& configurat
   const auto cancelled = [&] {
     return result.cancelled = result.cancelled || (options.cancelled && options.cancelled());
   };
-  Tracking prepared(recording, configuration.tracking, result, cancelled);
+  Tracking prepared(recording, configuration, result, cancelled);
   const ClockSearch& search = prepared.search();
   TrackingStage& tracking = prepared.stage();
   const Configuration used = withClock(configuration, search);
-  EstimationStage estimation(recording.rig(), used, result);
-  RunCheck check(recording.rig(), search.offset_s);
+  const Rig rig = withReadout(recording.rig(), search);
+  EstimationStage estimation(rig, used, result);
+  RunCheck check(rig, search.offset_s);
   const std::size_t expected_frames = recording.expectedFrames();
   const FrameTaker take = [&](const TrackedFrame& frame) {
     if (cancelled()) return false;

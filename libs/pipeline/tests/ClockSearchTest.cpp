@@ -12,6 +12,8 @@
 namespace lintel {
 namespace {
 
+constexpr double kStampSigma_s = 0.002;
+
 /// Grey level of what is seen in a direction: blobs on a sphere, far away.
 double brightness(const Eigen::Vector3d& d) {
   return 128 + 40 * std::sin(23 * d.x() + 9 * d.y()) * std::sin(19 * d.y() - 5 * d.z()) +
@@ -68,7 +70,7 @@ TEST(ClockSearch, FindsOffsetsWithinATenthOfASecond) {
     TurningRecording recording(offset_s);
     OdometryResult result;
     TrackingStage tracking(recording, points(), result);
-    const ClockSearch search = searchClock(tracking, recording.rig());
+    const ClockSearch search = searchClock(tracking, recording.rig(), kStampSigma_s);
     EXPECT_NEAR(search.offset_s, offset_s, 0.004) << offset_s;
   }
 }
@@ -77,7 +79,7 @@ TEST(ClockSearch, LeavesGoodStampsAlone) {
   TurningRecording recording(0.002);
   OdometryResult result;
   TrackingStage tracking(recording, points(), result);
-  const ClockSearch search = searchClock(tracking, recording.rig());
+  const ClockSearch search = searchClock(tracking, recording.rig(), kStampSigma_s);
   EXPECT_TRUE(search.clock.determined);
   EXPECT_EQ(search.offset_s, 0);
   EXPECT_LT(search.frames.size(), 60u) << "it ends when it knows";
@@ -88,7 +90,7 @@ TEST(ClockSearch, WaitsForTheFirstTurn) {
   TurningRecording recording(0.05, 1, 260, "", 8);
   OdometryResult result;
   TrackingStage tracking(recording, points(), result);
-  const ClockSearch search = searchClock(tracking, recording.rig());
+  const ClockSearch search = searchClock(tracking, recording.rig(), kStampSigma_s);
   EXPECT_NEAR(search.offset_s, 0.05, 0.004);
 }
 
@@ -96,7 +98,7 @@ TEST(ClockSearch, WithoutTurnsItTakesAllThereIsAndSaysNothing) {
   TurningRecording recording(0.05, 0, 140);
   OdometryResult result;
   TrackingStage tracking(recording, points(), result);
-  const ClockSearch search = searchClock(tracking, recording.rig());
+  const ClockSearch search = searchClock(tracking, recording.rig(), kStampSigma_s);
   EXPECT_EQ(search.offset_s, 0);
   EXPECT_FALSE(search.clock.determined);
   EXPECT_EQ(search.frames.size(), 140u);
@@ -107,7 +109,7 @@ TEST(ClockSearch, ItsFramesAreHandedOn) {
   TurningRecording searched(0, 1, 70, "cut off"), plain(0, 1, 70, "cut off");
   OdometryResult result, expected;
   TrackingStage tracking(searched, points(), result), reference(plain, points(), expected);
-  ClockSearch search = searchClock(tracking, searched.rig());
+  ClockSearch search = searchClock(tracking, searched.rig(), kStampSigma_s);
   ASSERT_GT(search.frames.size(), 20u);
   tracking.giveAgain(std::move(search.frames));
   int frames = 0;

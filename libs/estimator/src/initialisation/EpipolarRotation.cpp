@@ -34,13 +34,18 @@ void addPair(const FramePair& pair, const Eigen::Vector3d& bias_gyro, double wid
   const Eigen::Vector3d t = translationDirection(normals, width_rad);
   const Eigen::Matrix<double, 3, 2> across = tangentBasis(t);
   Eigen::Matrix2d Htt = Eigen::Matrix2d::Identity() * 1e-12;
-  Eigen::Matrix<double, 3, 2> Hbt = Eigen::Matrix<double, 3, 2>::Zero();
+  Eigen::Matrix<double, 4, 2> Hbt = Eigen::Matrix<double, 4, 2>::Zero();
   Eigen::Vector2d bt = Eigen::Vector2d::Zero();
   for (std::size_t i = 0; i < normals.size(); ++i) {
     const double e = t.dot(normals[i]), scaled = e / width_rad, w = 1 / (1 + scaled * scaled);
     // t . (a x dR u) = (t x a) . dR u,  dR u = -R (u x dtheta)
     const auto& [a, u] = pair.rays[i];
-    const Eigen::RowVector3d J = -(R.transpose() * t.cross(a)).cross(u).transpose() * d_theta;
+    Eigen::RowVector4d J = Eigen::RowVector4d::Zero();
+    J.head<3>() = -(R.transpose() * t.cross(a)).cross(u).transpose() * d_theta;
+    if (!pair.d_rays_d_readout.empty()) {
+      const auto& [d_a, d_u] = pair.d_rays_d_readout[i];
+      J(3) = t.dot(d_a.cross(R * u) + a.cross(R * d_u));
+    }
     const Eigen::RowVector2d Jt = normals[i].transpose() * across;
     system.H += w * J.transpose() * J;
     system.b += w * J.transpose() * e;
@@ -53,7 +58,7 @@ void addPair(const FramePair& pair, const Eigen::Vector3d& bias_gyro, double wid
   }
   // the translation's direction is correlated with the bias: it is eliminated, as alternating steps would converge
   // slowly
-  const Eigen::Matrix<double, 3, 2> gain = Hbt * Htt.inverse();
+  const Eigen::Matrix<double, 4, 2> gain = Hbt * Htt.inverse();
   system.H -= gain * Hbt.transpose();
   system.b -= gain * bt;
 }

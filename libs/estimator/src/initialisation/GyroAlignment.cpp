@@ -52,7 +52,7 @@ GyroAlignment alignGyro(const SlidingWindow& window) {
   if (pairs.size() < 5) return result;
   for (int iteration = 0; iteration < 15; ++iteration) {
     const EpipolarSystem system = epipolarSystem(pairs, result.bias_gyro, kWidth_rad);
-    const Eigen::Vector3d step = -solveLdlt(system.H, system.b);
+    const Eigen::Vector3d step = -solveLdlt<3>(system.H.topLeftCorner<3, 3>(), system.b.head<3>());
     result.bias_gyro += step;
     result.rms_rad = std::sqrt(system.sum / system.weights);
     if (step.norm() < kSettled_rad_s) break;

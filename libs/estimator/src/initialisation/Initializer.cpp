@@ -28,7 +28,7 @@ namespace lintel {
 
 namespace {
 
-constexpr double kKnownOffset_s = 0.002;
+constexpr double kKnownOffset_s = 0.002, kKnownReadout_s = 0.001;
 // Of k1 and k2, which move points at the image's corners by as many pixels as the focal length has hundreds.
 constexpr double kKnownDistortion = 0.02;
 // A start with k1 and k2 free is taken when it leaves less than this share of the squared residuals.
@@ -249,9 +249,10 @@ bool Initializer::adjust(const CalibrationParams& calibration, Gates gates, Slid
                std::numeric_limits<double>::infinity());
   const bool gated = gates == Gates::kHopeless;
   CalibrationParams frozen = calibration;
-  frozen.refine_extrinsics = frozen.refine_readout = false;
-  // an offset that is known from a search alone, to some milliseconds, would be taken for a bias
+  frozen.refine_extrinsics = false;
+  // what is known from a search alone, to some milliseconds, would be taken for a bias
   frozen.refine_time_offset &= frozen.time_offset_sigma_s > kKnownOffset_s;
+  frozen.refine_readout &= frozen.readout_sigma_s > kKnownReadout_s;
   LandmarkParams loose = params_.landmarks;
   // The first poses are rough: their errors are angles, and so are these limits.
   const double scale = pixelScale(window.camera());
@@ -266,7 +267,8 @@ bool Initializer::adjust(const CalibrationParams& calibration, Gates gates, Slid
     factors.addImu();
     factors.addPoints();
     factors.addGauge();
-    if (frozen.refine_time_offset || frozen.refine_camera) factors.addCalibrationPriors(frozen, T_b_c_calibrated_);
+    if (frozen.refine_time_offset || frozen.refine_readout || frozen.refine_camera)
+      factors.addCalibrationPriors(frozen, T_b_c_calibrated_);
     solveWindow(window, factors.factors(), frozen, limitsOf(round + 1 == kRounds));
     window.relinearise();
     loose.point_max_error_px = round == 0 ? 8 * scale : params_.landmarks.point_max_error_px;

@@ -7,6 +7,7 @@
 #include <random>
 
 #include "TestWindow.h"
+#include "lintel/geometry/Rotation.h"
 
 namespace lintel {
 namespace {
@@ -95,6 +96,103 @@ TEST(ClockOffset, NothingIsSaidWithoutRotationOrWithoutData) {
       const Span span = sliding(step_m, noise_px);
       EXPECT_FALSE(findClockOffset(span.frames, span.imu, rig).determined) << step_m << " m, " << noise_px << " px";
     }
+}
+
+/// A rolling shutter that a hand turns and moves among points; an image with stamp t shows, in its middle row, the
+/// world at t + offset of the IMU's clock.
+class RollingSpan {
+ public:
+  RollingSpan(double readout_s, double offset_s, double noise_px) : readout_s_(readout_s), noise_(0, noise_px) {
+    rig.T_b_c = {expRotation({0.3, -0.2, 1.5}), {0.05, -0.02, 0.1}};
+    for (int i = 0; i < 80; ++i) frame(1 + 0.05 * i, offset_s);
+    constexpr double kHalf_s = 1e-3;
+    for (int i = 0; i < 1200; ++i) {
+      const double t_s = 0.005 * i;
+      ImuSample sample;
+      sample.t_ns = std::llround(1e9 * t_s);
+      sample.gyro = logRotation(T_w_b(t_s - kHalf_s).q.conjugate() * T_w_b(t_s + kHalf_s).q) / (2 * kHalf_s) + kBias;
+      span.imu.push_back(sample);
+    }
+  }
+
+  Rig rig = plainRig();
+  Span span;
+
+ private:
+  static Pose T_w_b(double t) {
+    return {expRotation({0.12 * std::sin(3.1 * t), 0.1 * std::sin(4.3 * t + 1), 0.15 * std::sin(5.3 * t)}),
+            {0.2 * std::sin(1.1 * t), 0.15 * std::sin(1.7 * t), 0.1 * t}};
+  }
+
+  Eigen::Vector2d seenAt(const Eigen::Vector3d& p_w, double t_s) const {
+    return rig.camera.project((T_w_b(t_s) * rig.T_b_c).inverse() * p_w);
+  }
+
+  void frame(double stamp_s, double offset_s) {
+    FrameTracks frame;
+    frame.t_ns = std::llround(1e9 * stamp_s);
+    const Camera& camera = rig.camera;
+    for (TrackId id = 0; id < 60; ++id) {
+      const Eigen::Vector3d p_c(0.6 * (static_cast<double>(id % 10) - 4.5), 0.6 * (static_cast<double>(id / 10) - 2.5),
+                                3.0 + static_cast<double>(id % 7));
+      const Eigen::Vector3d p_w = rig.T_b_c.q * p_c;
+      Eigen::Vector2d px = seenAt(p_w, stamp_s + offset_s);
+      for (int i = 0; i < 10; ++i)
+        px = seenAt(p_w, stamp_s + offset_s + (px.y() / (camera.height - 1) - 0.5) * readout_s_);
+      px += Eigen::Vector2d(noise_(engine_), noise_(engine_));
+      PointObservation p;
+      p.id = id;
+      p.px = px;
+      p.ray = camera.ray(px);
+      frame.points.push_back(p);
+    }
+    span.frames.push_back(frame);
+  }
+
+  static inline const Eigen::Vector3d kBias{0.02, -0.01, 0.03};
+  double readout_s_;
+  std::mt19937_64 engine_{7};
+  std::normal_distribution<double> noise_;
+};
+
+TEST(ClockOffset, TheReadoutOfARollingShutterIsFoundWithIt) {
+  for (const double readout_s : {0.025, -0.015})
+    for (const double offset_s : {-0.05, 0.0}) {
+      const RollingSpan rolling(readout_s, offset_s, 0.4);
+      const ClockOffset found = findClockOffset(rolling.span.frames, rolling.span.imu, rolling.rig);
+      ASSERT_TRUE(found.determined);
+      EXPECT_NEAR(found.offset_s, offset_s, 0.002) << readout_s;
+      EXPECT_NEAR(found.readout_s, readout_s, 0.003) << offset_s;
+      EXPECT_GT(found.readout_sigma_s, 0);
+      EXPECT_LT(found.readout_sigma_s, 0.01);
+    }
+}
+
+TEST(ClockOffset, AGivenReadoutIsKept) {
+  RollingSpan rolling(0.025, -0.05, 0.4);
+  rolling.rig.line_delay_s = 0.025 / rolling.rig.camera.height;
+  const ClockOffset found = findClockOffset(rolling.span.frames, rolling.span.imu, rolling.rig);
+  EXPECT_NEAR(found.offset_s, -0.05, 0.002);
+  EXPECT_EQ(found.readout_s, rolling.rig.readout_s());
+  EXPECT_EQ(found.readout_sigma_s, 0);
+}
+
+TEST(ClockOffset, AGlobalShutterKeepsItsRows) {
+  const RollingSpan global(0, 0, 0.4);
+  const ClockOffset found = findClockOffset(global.span.frames, global.span.imu, global.rig);
+  EXPECT_NEAR(found.offset_s, 0, 0.002);
+  EXPECT_EQ(found.readout_s, 0);
+  EXPECT_EQ(found.readout_sigma_s, 0);
+}
+
+TEST(LikelierAndSigma, TakesOneAndCoversTheOther) {
+  const auto [a, sigma_a] = likelierAndSigma(0.75, 1, 2, 4, 1);
+  EXPECT_EQ(a, 1);
+  EXPECT_NEAR(sigma_a, std::sqrt(0.75 * 4 + 0.25 * (1 + 9)), 1e-12);
+  const auto [b, sigma_b] = likelierAndSigma(0.25, 1, 2, 4, 1);
+  EXPECT_EQ(b, 4);
+  EXPECT_NEAR(sigma_b, std::sqrt(0.75 * 1 + 0.25 * (4 + 9)), 1e-12);
+  EXPECT_EQ(likelierAndSigma(1, 1, 2, 400, 100), std::make_pair(1.0, 2.0));
 }
 
 }  // namespace
