@@ -129,7 +129,7 @@ OdometryResult runOdometry(Recording& recording, const Configuration& configurat
   const Configuration used = withClock(configuration, search);
   const Rig rig = withReadout(recording.rig(), search);
   EstimationStage estimation(rig, used, result);
-  RunCheck check(rig, search.offset_s);
+  RunCheck check(rig, search.offset_s, search.clock.determined ? search.clock.bias_gyro : Eigen::Vector3d::Zero());
   const std::size_t expected_frames = recording.expectedFrames();
   const FrameTaker take = [&](const TrackedFrame& frame) {
     if (cancelled()) return false;

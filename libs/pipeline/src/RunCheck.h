@@ -21,9 +21,15 @@ namespace lintel {
 /// Looks for contradictions in a run, while it goes on.
 class RunCheck {
  public:
-  /// `clock_offset_s`: by which the stamps have been corrected.
-  explicit RunCheck(const Rig& rig, double clock_offset_s = 0)
-      : rig_(rig), clock_offset_s_(clock_offset_s), accelerometer_(rig.gravity_m_s2), turns_(rig.T_b_c.q) {}
+  /// `clock_offset_s`: by which the stamps have been corrected. `bias_gyro`: what is known of it before the estimator
+  /// knows it [rad/s].
+  explicit RunCheck(const Rig& rig, double clock_offset_s = 0,
+                    const Eigen::Vector3d& bias_gyro = Eigen::Vector3d::Zero())
+      : rig_(rig),
+        clock_offset_s_(clock_offset_s),
+        accelerometer_(rig.gravity_m_s2),
+        turns_(rig.T_b_c.q),
+        bias_gyro_(bias_gyro) {}
 
   /// A frame, as tracked, and what the estimator made of it.
   void add(const TrackedFrame& frame, const WindowUpdate& update);
@@ -62,7 +68,7 @@ class RunCheck {
   std::optional<InertialState> keyframe_;  ///< the last one that has left the window
   std::vector<double> imu_misfits_;        ///< squared, of nine degrees of freedom, between keyframes
   std::vector<double> biases_gyro_, biases_accel_;
-  Eigen::Vector3d bias_gyro_ = Eigen::Vector3d::Zero();
+  Eigen::Vector3d bias_gyro_;
   std::string divergence_;           ///< the first; empty: none
   std::int64_t first_ns_ = -1;       ///< of the frames
   std::deque<Speed> speeds_;         ///< of the last seconds, without a reset in between

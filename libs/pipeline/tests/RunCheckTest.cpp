@@ -115,6 +115,27 @@ TEST(RunCheck, ImagesThatContradictTheImu) {
   EXPECT_EQ(verdictOf(9.81, 0, 0, 1, givenRig(), 0.1, 30), "") << "in the first seconds nothing has settled";
 }
 
+/// A robot without a start that drives circles, whose gyroscope has a bias of 5 degrees a second.
+double axesMisfitOfCircles(const Eigen::Vector3d& known_bias) {
+  const Eigen::Vector3d bias(0.06, 0.02, 0.07);
+  RunCheck check{givenRig(), 0, known_bias};
+  for (int frame = 0; frame < 300; ++frame) {
+    TrackedFrame tracked;
+    tracked.step.frame.image =
+        std::make_shared<GrayImage>(GrayImage{64, 64, std::vector<std::uint8_t>(std::size_t{64} * 64, 100)});
+    for (int i = 0; i <= 20; ++i)
+      tracked.step.imu.push_back(
+          {std::llround(1e9 * (0.1 * frame + 0.005 * i)), Eigen::Vector3d(0, 0, 0.35) + bias, {0, 0.25, 9.81}});
+    check.add(tracked, {});
+  }
+  return check.evidence().at("accelerometer_axes_misfit");
+}
+
+TEST(RunCheck, TheGyroscopesBiasIsNoTurnOfGravity) {
+  EXPECT_GT(axesMisfitOfCircles({0, 0, 0}), 1.2) << "mixed up axes would fit better";
+  EXPECT_EQ(axesMisfitOfCircles({0.06, 0.02, 0.07}), 1);
+}
+
 /// Half a minute of turning about x; each second keyframe jumps.
 std::string verdictWithAccelerometer(bool swapped, double jump_m) {
   RunCheck check{givenRig()};
