@@ -11,8 +11,8 @@ namespace lintel {
 
 namespace {
 
-// Fourth differences: steps of a walker are four times as slow as what means of four samples show, and leave a
-// thousandth of their size. Their squares add up to kSquares for samples of unit variance.
+// Fourth differences: where white noise keeps its size, a walker's steps (2 Hz, means of four samples at 200 Hz) keep
+// 0.0005 of theirs, and 0.026 in second differences. kSquares is their variance for samples of unit variance.
 constexpr double kDifference[] = {1, -4, 6, -4, 1};
 constexpr double kSquares = 70;
 

@@ -7,6 +7,8 @@
 #include <tuple>
 #include <vector>
 
+#include "lintel/core/Hypotheses.h"
+
 namespace lintel {
 
 namespace {
@@ -17,7 +19,6 @@ constexpr double kNewTurning_s = 0.3;  // since the last try, for another one
 constexpr double kImuBefore_s = 2 * kLargestClockOffset_s;
 constexpr double kGoodSigma_s = 0.004;
 constexpr double kRightShare = 0.5;        // of recordings, whose stamps are right
-constexpr double kSureShare = 0.8;         // from which they are left as they are
 constexpr double kLeastTurn_rad_s = 0.03;  // slower turns show the offset to tens of milliseconds only
 constexpr std::size_t kMostHeld_bytes = std::size_t{1} << 29;  // of images while the camera is still
 
@@ -33,10 +34,6 @@ template <class Item>
 void eraseBefore(std::int64_t t_ns, std::vector<Item>& items) {
   const auto earlier = [t_ns](const Item& item) { return item.t_ns < t_ns; };
   items.erase(items.begin(), std::find_if_not(items.begin(), items.end(), earlier));
-}
-
-double normalDensity(double x, double sigma) {
-  return std::exp(-0.5 * x * x / (sigma * sigma)) / (std::sqrt(2 * M_PI) * sigma);
 }
 
 /// What is known of the offset after the search: the stamps are right to `stamp_sigma_s`, or any offset within the

@@ -72,6 +72,7 @@ TEST(ClockSearch, FindsOffsetsWithinATenthOfASecond) {
     TrackingStage tracking(recording, points(), result);
     const ClockSearch search = searchClock(tracking, recording.rig(), kStampSigma_s);
     EXPECT_NEAR(search.offset_s, offset_s, 0.004) << offset_s;
+    EXPECT_GE(search.sigma_s, search.clock.sigma_s) << "it covers stamps that are right";
   }
 }
 
@@ -82,6 +83,7 @@ TEST(ClockSearch, LeavesGoodStampsAlone) {
   const ClockSearch search = searchClock(tracking, recording.rig(), kStampSigma_s);
   EXPECT_TRUE(search.clock.determined);
   EXPECT_EQ(search.offset_s, 0);
+  EXPECT_EQ(search.sigma_s, kStampSigma_s);
   EXPECT_LT(search.frames.size(), 60u) << "it ends when it knows";
 }
 

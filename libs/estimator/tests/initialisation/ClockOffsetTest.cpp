@@ -185,15 +185,5 @@ TEST(ClockOffset, AGlobalShutterKeepsItsRows) {
   EXPECT_EQ(found.readout_sigma_s, 0);
 }
 
-TEST(LikelierAndSigma, TakesOneAndCoversTheOther) {
-  const auto [a, sigma_a] = likelierAndSigma(0.75, 1, 2, 4, 1);
-  EXPECT_EQ(a, 1);
-  EXPECT_NEAR(sigma_a, std::sqrt(0.75 * 4 + 0.25 * (1 + 9)), 1e-12);
-  const auto [b, sigma_b] = likelierAndSigma(0.25, 1, 2, 4, 1);
-  EXPECT_EQ(b, 4);
-  EXPECT_NEAR(sigma_b, std::sqrt(0.75 * 1 + 0.25 * (4 + 9)), 1e-12);
-  EXPECT_EQ(likelierAndSigma(1, 1, 2, 400, 100), std::make_pair(1.0, 2.0));
-}
-
 }  // namespace
 }  // namespace lintel

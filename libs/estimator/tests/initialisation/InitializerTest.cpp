@@ -160,6 +160,21 @@ TEST_F(InitializerTest, ADistortionThatIsNotGivenIsLearned) {
   EXPECT_LT(relativeMotionError(window, f, 0, 38), 0.10);
 }
 
+/// One that a search has found is known to some milliseconds, and held it would be taken for a bias.
+TEST_F(InitializerTest, AReadoutThatIsRoughlyKnownIsRefinedAndAGivenOneIsNot) {
+  const TrackedFlight f = noisyFlight(0.3, ImuSimulatorParams{});  // a global shutter
+  SlidingWindow given = bufferOf(f, 0, 20);
+  ASSERT_EQ(initializer_.initialise(given), "");
+  EXPECT_EQ(given.correction[kReadoutAt], 0);
+  EstimatorParams searched = params_;
+  searched.calibration.readout_sigma_s = 0.005;
+  TrackedFlight wrong = f;
+  wrong.rig.line_delay_s = 0.004 / f.rig.camera.height;
+  SlidingWindow window = bufferOf(wrong, 0, 20);
+  ASSERT_EQ(Initializer(searched, f.rig.T_b_c).initialise(window), "");
+  EXPECT_NEAR(window.readout_s(), 0, 0.002);
+}
+
 TEST_F(InitializerTest, StartsAtRest) {
   const DelayedStart resting(std::make_shared<FigureTrajectory>(), 4);
   ImuSimulatorParams imu;

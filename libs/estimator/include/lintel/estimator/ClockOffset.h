@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <utility>
 #include <vector>
 
 #include "lintel/core/Frame.h"
@@ -17,17 +16,11 @@ struct ClockOffset {
   double sigma_s = 0;          ///< its standard deviation
   double readout_s = 0;        ///< of a rolling shutter: the given one where that is likely to be right
   double readout_sigma_s = 0;  ///< its standard deviation; 0 where it is the given one
-  Eigen::Vector3d bias_gyro = Eigen::Vector3d::Zero();        ///< of the whole span [rad/s]
-  Eigen::Vector3d bias_gyro_sigma = Eigen::Vector3d::Zero();  ///< its standard deviations
-  double rms_px = 0;                                          ///< what remains of the epipolar constraint at the offset
-  double rms_still_px = 0;                                    ///< the same without the gyroscope's rotations
+  Eigen::Vector3d bias_gyro = Eigen::Vector3d::Zero();  ///< of the whole span [rad/s]
+  double rms_px = 0;                                    ///< what remains of the epipolar constraint at the offset
 };
 
 constexpr double kLargestClockOffset_s = 0.1;
-
-/// The likelier one of `a`, which has the probability `share_a`, and `b`, each with its own standard deviation, and the
-/// root mean square of how far it is off in both cases.
-std::pair<double, double> likelierAndSigma(double share_a, double a, double sigma_a, double b, double sigma_b);
 
 /// Searches the offset at which the gyroscope's rotations fit the images' points best: for every offset on a grid
 /// gyro bias and all directions of translation are estimated anew (EpipolarRotation), so that neither a bias nor
