@@ -44,6 +44,20 @@ constexpr double kMostScaleSigma = 0.02;  // no prior takes points in before: it
 constexpr int kFramesBeforeRetrial = 5;
 constexpr int kFramesBetweenTries = 4;  // with a full buffer, of which little is new then
 
+constexpr double kLongestBuffer_s =
+    12;  // of a start that waits for its scale: a scale shows with the power 1.5 of time
+
+/// The frame without which those that remain are nearest to each other, the oldest such; the first frame of a buffer
+/// that is long enough.
+template <class Frames>
+std::size_t frameToThinOut(const Frames& frames) {
+  if (1e-9 * static_cast<double>(frames.back().t_ns - frames.front().t_ns) > kLongestBuffer_s) return 0;
+  std::size_t best = 1;
+  for (std::size_t k = 1; k + 1 < frames.size(); ++k)
+    if (frames[k + 1].t_ns - frames[k - 1].t_ns < frames[best + 1].t_ns - frames[best - 1].t_ns) best = k;
+  return best;
+}
+
 /// When a solve may end, see SolveLimits::min_move. After it mostly landmarks move, one by one: waiting for them took a
 /// quarter of the solver's time and made the trajectory a few per cent better on average.
 constexpr double kSettledMove = 0.3;
@@ -77,6 +91,7 @@ class Estimator::Impl {
   void addFrame(const FrameTracks& tracks);
   void remember(const FrameTracks& tracks);
   void initialise(WindowUpdate& update);
+  void dropFromBuffer(std::size_t k);
   void replaceWrongStart(const std::vector<StateCovariance>& covariances, WindowUpdate& update);
   void addPosesBetween(const WindowFrame& from, const WindowFrame& to, const StateCovariance& covariance,
                        WindowUpdate& update) const;
@@ -122,7 +137,8 @@ class Estimator::Impl {
   Pose anchor_T_w_b_;  // where a new start continues
 
   StartMemory memory_;
-  int frames_to_wait_ = 0;  // before a start is tried
+  int frames_to_wait_ = 0;        // before a start is tried
+  bool waits_for_scale_ = false;  // since the last try with a full buffer
   std::string waits_for_;
   std::int64_t first_pose_ns_ = 0;                // of the present start
   std::optional<std::int64_t> replaces_from_ns_;  // first pose of the wrong start that is to be replaced
@@ -203,12 +219,8 @@ void Estimator::Impl::addFrame(const FrameTracks& tracks) {
 }
 
 void Estimator::Impl::initialise(WindowUpdate& update) {
-  while (static_cast<int>(window_.frames.size()) > params_.initializer.max_frames) {
-    WindowUpdate nothing;
-    retireTracks(window_, window_.frames.front().id, false, nothing);
-    window_.removeFrame(window_.frames.front().id, false);
-    window_.frames.front().imu.reset();
-  }
+  while (static_cast<int>(window_.frames.size()) > params_.initializer.max_frames)
+    dropFromBuffer(waits_for_scale_ ? frameToThinOut(window_.frames) : 0);
   if (frames_to_wait_ > 0) {
     --frames_to_wait_;
     update.reason = waits_for_;
@@ -220,11 +232,13 @@ void Estimator::Impl::initialise(WindowUpdate& update) {
   update.reason = initializer_.initialise(buffer);
   if (!update.reason.empty()) {
     if (static_cast<int>(buffer.frames.size()) < params_.initializer.max_frames) return;
+    waits_for_scale_ = update.reason == Initializer::kScaleUnknown;
     frames_to_wait_ = kFramesBetweenTries;
     waits_for_ = update.reason;
     return;
   }
   window_ = std::move(buffer);
+  waits_for_scale_ = false;
   moveToAnchor();
   tracking_ = true;
   blind_frames_ = tracks_since_start_ = 0;
@@ -240,6 +254,23 @@ void Estimator::Impl::initialise(WindowUpdate& update) {
   if (replaces_from_ns_) replaceWrongStart(covariances, update);
   while (static_cast<int>(window_.frames.size()) > params_.keyframes) dropOldest(update);
   fillPose(update);
+}
+
+/// Frame `k` leaves a buffer without states.
+void Estimator::Impl::dropFromBuffer(std::size_t k) {
+  const FrameId leaving = window_.frames[k].id;
+  WindowFrame& next = window_.frames[k + 1];
+  if (k == 0) {
+    next.imu.reset();
+  } else {
+    auto joined = std::make_shared<Preintegration>(*window_.frames[k].imu);
+    joined->append(*next.imu);
+    next.imu = std::move(joined);
+    next.still = next.still && window_.frames[k].still;
+  }
+  WindowUpdate nothing;
+  retireTracks(window_, leaving, false, nothing);
+  window_.removeFrame(leaving, false);
 }
 
 /// Frames of this start that the wrong one had given poses for.
@@ -393,6 +424,7 @@ void Estimator::Impl::fail(Failure failure, const std::string& reason, WindowUpd
   }
   clearWindow(keep_calibration);
   tracking_ = false;
+  waits_for_scale_ = false;
   replaces_from_ns_.reset();
   if (start_was_wrong) {
     replaces_from_ns_ = first_pose_ns_;
@@ -478,6 +510,7 @@ WindowUpdate Estimator::Impl::finish() {
   pending_imu_.clear();
   memory_.clear();
   frames_to_wait_ = 0;
+  waits_for_scale_ = false;
   replaces_from_ns_.reset();
   return update;
 }

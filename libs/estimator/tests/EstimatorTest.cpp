@@ -452,6 +452,21 @@ TEST(Estimator, MotorsDoNotShrinkTheTimeOffset) {
   EXPECT_NEAR(estimator.calibration().time_offset_s, kOffset_s, 0.15 * kOffset_s);
 }
 
+/// Of a gentle motion fifteen frames in a row, one and a half seconds, do not show the scale. While it is waited for,
+/// the buffer becomes longer by frames that are left out between others.
+TEST(Estimator, ABufferThatDoesNotShowTheScaleBecomesLonger) {
+  FigureParams gentle;
+  gentle.shake = 0;
+  const TrackedFlight flight = fly(ImuSimulatorParams{}, tracksFor(8, 0.3), FigureTrajectory(gentle));
+  EstimatorParams params = withoutCalibration();
+  params.initializer.max_frames = 15;
+  const auto updates = run(flight, params, false);
+  ASSERT_GT(posesOf(updates), 60);
+  EXPECT_EQ(lostOf(updates), 0);
+  const auto [estimate, truth] = positionsOf(updates, flight);
+  EXPECT_NEAR(alignPositions(AlignmentKind::kSim3, estimate, truth).scale, 1, 0.08);
+}
+
 TEST(Estimator, PureRotationGivesNoPoseRatherThanAWrongOne) {
   FigureParams turning;
   turning.translation = 0;

@@ -4,6 +4,7 @@
 #include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <map>
 #include <tuple>
 
@@ -18,6 +19,8 @@ constexpr int kSteps = 20;  // of the grid, to either side: 5 ms, much less than
 constexpr double kStep_s = kLargestClockOffset_s / kSteps;
 constexpr int kCoarse = 4;                 // steps at first, 20 ms: a fifth of the period of a hand that shakes
 constexpr double kLeastCertain_s = 0.025;  // the range is eight times as wide
+constexpr double kFineStep_s = 1e-3;       // at which the likelihood is summed up over the range
+constexpr double kMostSpread_s = 0.04;     // of the offset over the whole range; 0.058 where all are as likely
 constexpr double kLeastTurn_px = 0.3;      // a turn that moves points by less than tracks err shows no offset
 constexpr double kWidth_px = 2;            // of the robust loss
 constexpr std::size_t kLeastPairs = 10;
@@ -48,6 +51,16 @@ class Grid {
     }
   }
 
+  /// The cost at an offset, by straight lines between those that were evaluated.
+  double between(double offset_s) const {
+    const double k = offset_s / kStep_s;
+    const auto after = systems_.lower_bound(std::min(kSteps, static_cast<int>(std::ceil(k))));
+    if (after == systems_.begin()) return after->second.cost;
+    const auto before = std::prev(after);
+    const double share = (k - before->first) / (after->first - before->first);
+    return (1 - share) * before->second.cost + share * after->second.cost;
+  }
+
   const EpipolarSystem& at(int k) {
     const auto found = systems_.find(k);
     return found != systems_.end() ? found->second : systems_.emplace(k, fit_.at(k * kStep_s)).first->second;
@@ -75,6 +88,21 @@ bool findMinimum(const ClockFit& fit, int place, Grid& grid, ClockOffset& found)
   // cost / variance is a chi-square: its second derivative is twice the information
   found.sigma_s = kStep_s * std::sqrt(2 * fit.variance(best) / curvature);
   return true;
+}
+
+/// Standard deviation of the offset over the whole range, each offset weighed by its likelihood. Noise
+/// makes the costs of neighbouring offsets differ, so that a parabola fits a minimum into a flat cost.
+double spread_s(double variance, double lowest, const Grid& grid) {
+  double sum = 0, mean_s = 0, squares = 0;
+  const int steps = static_cast<int>(std::lround(kLargestClockOffset_s / kFineStep_s));
+  for (int i = -steps; i <= steps; ++i) {
+    const double offset_s = i * kFineStep_s, likelihood = std::exp(0.5 * (lowest - grid.between(offset_s)) / variance);
+    sum += likelihood;
+    mean_s += likelihood * offset_s;
+    squares += likelihood * offset_s * offset_s;
+  }
+  mean_s /= sum;
+  return std::sqrt(std::max(0.0, squares / sum - mean_s * mean_s));
 }
 
 /// How likely it is that the readout is as given: `other` has another one, which is in the middle of what is likely
@@ -126,13 +154,14 @@ ClockOffset findClockOffset(const std::vector<FrameTracks>& frames, const ImuBat
   const auto rmsOf = [focal](const EpipolarSystem& system) { return focal * std::sqrt(system.sum / system.weights); };
   found.rms_px = rmsOf(grid.at(place));
   if (!findMinimum(fit, place, grid, found)) return found;
+  const bool one_fits = spread_s(fit.variance(grid.at(place)), grid.at(place).cost, grid) < kMostSpread_s;
   if (found.sigma_s < kLeastCertain_s && !findReadout(place, fit, found)) fit.holdReadout();
   const EpipolarSystem there = fit.at(found.offset_s);
   found.rms_px = rmsOf(there);
   found.bias_gyro = fit.bias();
   const double still_px = rmsOf(fit.withoutGyro()),
                turn_px = std::sqrt(std::max(0.0, still_px * still_px - found.rms_px * found.rms_px));
-  found.determined = found.sigma_s < kLeastCertain_s && turn_px > kLeastTurn_px;
+  found.determined = one_fits && found.sigma_s < kLeastCertain_s && turn_px > kLeastTurn_px;
   return found;
 }
 

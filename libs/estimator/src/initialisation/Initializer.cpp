@@ -36,7 +36,6 @@ constexpr double kClearlyBetter = 0.6;
 // An adjustment is left when the scale is less certain than asked for by this factor, before it and after its first
 // rounds: what is left of it changes the scale's sigma by less.
 constexpr double kHopelessBefore = 3, kHopelessAfter[] = {2, 1.5};
-constexpr char kScaleUnknown[] = "waiting for a motion that shows the scale";
 // A start whose median error is less than this share of the points' sigma is in the deepest minimum: in others errors
 // are those of a wrong geometry.
 constexpr double kUnambiguous = 0.5;

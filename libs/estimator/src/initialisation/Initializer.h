@@ -22,6 +22,9 @@ class Initializer {
   /// what is waited for.
   std::string initialise(SlidingWindow& window) const;
 
+  /// What initialise() says where everything fits, but the scale is not known well enough.
+  static constexpr char kScaleUnknown[] = "waiting for a motion that shows the scale";
+
   /// True when points and IMU say that nothing moves over the whole buffer.
   bool atRest(const SlidingWindow& window) const;
 

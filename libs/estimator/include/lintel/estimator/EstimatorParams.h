@@ -131,12 +131,12 @@ struct DegeneracyParams {
 
 /// The way into the window; see Initializer.
 struct InitializerParams {
-  int min_frames = 10;               ///< window frames (estimator rate) before the first attempt
-  int max_frames = 45;               ///< older ones are dropped; four seconds of a slow motion show scale and biases
-  double point_sigma_px = 0.7;       ///< of a tracked point, with the errors of the calibration, which is held [px]
-  double point_loss_width = 1;       ///< Cauchy width in a start, in standard deviations
-  double min_parallax_px = 12;       ///< rotation-compensated, median, over the buffer; below: static or waiting
-  double max_error_px = 2.0;         ///< median reprojection error of an accepted start
+  int min_frames = 10;          ///< window frames (estimator rate) before the first attempt
+  int max_frames = 45;          ///< of the buffer; then older ones are dropped, or, waiting for the scale, some between
+  double point_sigma_px = 0.7;  ///< of a tracked point, with the errors of the calibration, which is held [px]
+  double point_loss_width = 1;  ///< Cauchy width in a start, in standard deviations
+  double min_parallax_px = 12;  ///< rotation-compensated, median, over the buffer; below: static or waiting
+  double max_error_px = 2.0;    ///< median reprojection error of an accepted start
   double max_scale_sigma = 0.04;     ///< relative standard deviation of the scale of an accepted start
   double max_bias_accel = 1.5;       ///< [m/s^2]
   double bias_gyro_sigma = 0.1;      ///< prior [rad/s]
