@@ -8,6 +8,7 @@
 #include "ParamsCheck.h"
 #include "StartMemory.h"
 #include "initialisation/Initializer.h"
+#include "initialisation/StartBuffer.h"
 #include "landmarks/LineDegeneracy.h"
 #include "landmarks/LineTriangulation.h"
 #include "landmarks/ParallelGroups.h"
@@ -44,20 +45,6 @@ constexpr double kMostScaleSigma = 0.02;  // no prior takes points in before: it
 constexpr int kFramesBeforeRetrial = 5;
 constexpr int kFramesBetweenTries = 4;  // with a full buffer, of which little is new then
 
-constexpr double kLongestBuffer_s =
-    12;  // of a start that waits for its scale: a scale shows with the power 1.5 of time
-
-/// The frame without which those that remain are nearest to each other, the oldest such; the first frame of a buffer
-/// that is long enough.
-template <class Frames>
-std::size_t frameToThinOut(const Frames& frames) {
-  if (1e-9 * static_cast<double>(frames.back().t_ns - frames.front().t_ns) > kLongestBuffer_s) return 0;
-  std::size_t best = 1;
-  for (std::size_t k = 1; k + 1 < frames.size(); ++k)
-    if (frames[k + 1].t_ns - frames[k - 1].t_ns < frames[best + 1].t_ns - frames[best - 1].t_ns) best = k;
-  return best;
-}
-
 /// When a solve may end, see SolveLimits::min_move. After it mostly landmarks move, one by one: waiting for them took a
 /// quarter of the solver's time and made the trajectory a few per cent better on average.
 constexpr double kSettledMove = 0.3;
@@ -91,7 +78,7 @@ class Estimator::Impl {
   void addFrame(const FrameTracks& tracks);
   void remember(const FrameTracks& tracks);
   void initialise(WindowUpdate& update);
-  void dropFromBuffer(std::size_t k);
+  void shortenBuffer();
   void replaceWrongStart(const std::vector<StateCovariance>& covariances, WindowUpdate& update);
   void addPosesBetween(const WindowFrame& from, const WindowFrame& to, const StateCovariance& covariance,
                        WindowUpdate& update) const;
@@ -219,8 +206,7 @@ void Estimator::Impl::addFrame(const FrameTracks& tracks) {
 }
 
 void Estimator::Impl::initialise(WindowUpdate& update) {
-  while (static_cast<int>(window_.frames.size()) > params_.initializer.max_frames)
-    dropFromBuffer(waits_for_scale_ ? frameToThinOut(window_.frames) : 0);
+  while (static_cast<int>(window_.frames.size()) > params_.initializer.max_frames) shortenBuffer();
   if (frames_to_wait_ > 0) {
     --frames_to_wait_;
     update.reason = waits_for_;
@@ -256,21 +242,11 @@ void Estimator::Impl::initialise(WindowUpdate& update) {
   fillPose(update);
 }
 
-/// Frame `k` leaves a buffer without states.
-void Estimator::Impl::dropFromBuffer(std::size_t k) {
-  const FrameId leaving = window_.frames[k].id;
-  WindowFrame& next = window_.frames[k + 1];
-  if (k == 0) {
-    next.imu.reset();
-  } else {
-    auto joined = std::make_shared<Preintegration>(*window_.frames[k].imu);
-    joined->append(*next.imu);
-    next.imu = std::move(joined);
-    next.still = next.still && window_.frames[k].still;
-  }
-  WindowUpdate nothing;
-  retireTracks(window_, leaving, false, nothing);
-  window_.removeFrame(leaving, false);
+/// Makes room in a full buffer. A frame that is left out between others has its pose from the IMU if it is replaced.
+void Estimator::Impl::shortenBuffer() {
+  const std::size_t k = waits_for_scale_ ? frameToThinOut(window_) : 0;
+  if (k > 0) memory_.addSkipped(window_.frames[k].t_ns, window_.frames.front().t_ns);
+  leaveOut(k, window_);
 }
 
 /// Frames of this start that the wrong one had given poses for.

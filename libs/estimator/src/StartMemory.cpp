@@ -11,7 +11,7 @@ void StartMemory::add(const FrameTracks& tracks, const ImuBatch& imu, std::size_
 }
 
 void StartMemory::addSkipped(std::int64_t t_ns, std::int64_t from_ns) {
-  skipped_ns_.push_back(t_ns);
+  skipped_ns_.insert(std::upper_bound(skipped_ns_.begin(), skipped_ns_.end(), t_ns), t_ns);
   if (!inputs_.empty()) from_ns = std::min(from_ns, inputs_.front().tracks.t_ns);
   while (skipped_ns_.front() < std::min(from_ns, t_ns)) skipped_ns_.pop_front();
 }

@@ -22,7 +22,8 @@ class StartMemory {
   /// Keeps the last `most` window frames.
   void add(const FrameTracks& tracks, const ImuBatch& imu, std::size_t most);
 
-  /// A frame between window frames; of these all since the first window frame that is kept here, or since `from_ns`.
+  /// A frame between window frames, in any order; of these all since the first window frame that is kept here, or since
+  /// `from_ns`.
   void addSkipped(std::int64_t t_ns, std::int64_t from_ns);
 
   void clear();

@@ -30,6 +30,13 @@ TEST(StartMemory, KeepsTheLastFramesAndThoseBetweenThem) {
   EXPECT_TRUE(memory.skippedBetween(0, 100).empty());
 }
 
+/// As those are that a buffer has left out to become longer.
+TEST(StartMemory, FramesBetweenOthersMayComeInAnyOrder) {
+  StartMemory memory;
+  for (const std::int64_t t_ns : {3, 7, 5, 9, 4}) memory.addSkipped(t_ns, 0);
+  EXPECT_EQ(memory.skippedBetween(3, 10), (std::vector<std::int64_t>{4, 5, 7, 9}));
+}
+
 TEST(StartMemory, KeepsFramesBetweenThoseOfTheWindowAsWell) {
   StartMemory memory;
   memory.addSkipped(1, 0);

@@ -90,8 +90,8 @@ bool findMinimum(const ClockFit& fit, int place, Grid& grid, ClockOffset& found)
   return true;
 }
 
-/// Standard deviation of the offset over the whole range, each offset weighed by its likelihood. Noise
-/// makes the costs of neighbouring offsets differ, so that a parabola fits a minimum into a flat cost.
+/// Standard deviation of the offset over the whole range, each offset weighed by its likelihood. Noise makes the costs
+/// of neighbouring offsets differ, so that a parabola fits a minimum into a flat cost.
 double spread_s(double variance, double lowest, const Grid& grid) {
   double sum = 0, mean_s = 0, squares = 0;
   const int steps = static_cast<int>(std::lround(kLargestClockOffset_s / kFineStep_s));

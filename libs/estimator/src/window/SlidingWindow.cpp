@@ -8,6 +8,13 @@
 
 namespace lintel {
 
+void WindowFrame::joinInterval(const WindowFrame& before) {
+  auto joined = std::make_shared<Preintegration>(*before.imu);
+  joined->append(*imu);
+  imu = std::move(joined);
+  still = still && before.still;
+}
+
 SlidingWindow::SlidingWindow(const Rig& rig)
     : extrinsics(toBlock(rig.T_b_c)),
       camera_(rig.camera),

@@ -122,10 +122,7 @@ void marginaliseSecondNewest(SlidingWindow& window) {
     (outlives(window.points.at(key.id), leaving.id, newest.id) ? staying.points : dropped).insert(key);
   if (const std::vector<WindowPrior> priors = takePriors(window, dropped); !priors.empty())
     marginaliseWith(window, {}, priors, dropped, staying);
-  auto joined = std::make_shared<Preintegration>(*leaving.imu);
-  joined->append(*newest.imu);
-  newest.imu = std::move(joined);
-  newest.still = newest.still && leaving.still;
+  newest.joinInterval(leaving);
 }
 
 }  // namespace lintel

@@ -45,6 +45,9 @@ struct WindowFrame {
   bool still = false;                              ///< has not moved since the frame before (RestDetection)
   bool blind = false;                              ///< sees next to nothing that is placed: the IMU carries it
 
+  /// The frame before leaves: the interval begins at the one before that.
+  void joinInterval(const WindowFrame& before);
+
   Pose T_w_b() const { return poseFromBlock(pose.data()); }
   FrameMotion bodyMotion() const {
     return {T_w_b().q.conjugate() * velocityOf(motion.data()), gyro - biasOf(motion.data()).gyro};
