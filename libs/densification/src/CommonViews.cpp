@@ -2,7 +2,6 @@
 #include "CommonViews.h"
 
 #include <algorithm>
-#include <map>
 
 #include "lintel/core/Quantiles.h"
 
@@ -37,22 +36,25 @@ std::vector<std::size_t> spread(const std::vector<SegmentView>& views, std::size
 }  // namespace
 
 std::vector<CommonViews> findCommonViews(const SeenPoints& points, std::size_t most, std::vector<SegmentView>& views) {
-  std::vector<std::map<std::size_t, std::size_t>> shared(views.size());
-  for (const std::vector<std::size_t>& by : points.viewsByPoint())
-    for (const std::size_t a : by)
-      for (const std::size_t b : by)
-        if (a != b) ++shared[a][b];
+  std::vector<std::vector<std::size_t>> points_of(views.size());
+  for (std::size_t i = 0; i < points.viewsByPoint().size(); ++i)
+    for (const std::size_t v : points.viewsByPoint()[i]) points_of[v].push_back(i);
   std::vector<CommonViews> common(views.size());
+  std::vector<std::size_t> shared(views.size());  // points, with each other view
   for (std::size_t v = 0; v < views.size(); ++v) {
     std::vector<double> distances = points.distances_m(v);
     if (distances.size() < kLeastShared) continue;
     std::sort(distances.begin(), distances.end());
     views[v].near_m = kNearest * distances[distances.size() / 20];
     views[v].far_m = kFarthest * distances[distances.size() * 19 / 20];
+    std::fill(shared.begin(), shared.end(), 0);
+    for (const std::size_t i : points_of[v])
+      for (const std::size_t other : points.viewsByPoint()[i]) ++shared[other];
     std::vector<std::size_t> among;
-    for (const auto& [other, n] : shared[v]) {
+    for (std::size_t other = 0; other < views.size(); ++other) {
+      if (other == v || shared[other] < kLeastShared) continue;
       const auto fewer = static_cast<double>(std::min(distances.size(), points.distances_m(other).size()));
-      if (n >= kLeastShared && static_cast<double>(n) >= kLeastShare * fewer) among.push_back(other);
+      if (static_cast<double>(shared[other]) >= kLeastShare * fewer) among.push_back(other);
     }
     common[v].chosen = spread(views, v, among, most);
     common[v].all = std::move(among);

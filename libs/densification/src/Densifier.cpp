@@ -121,12 +121,17 @@ class Densifier {
 
   /// Those that share points with views of the line, or with the first searched after one of them.
   std::vector<std::size_t> viewsAround(const LineRecord& line) const {
-    std::set<std::size_t> at, around;
+    std::set<std::size_t> at;
     for (const LineView& v : line.views)
       if (const auto found = place_.lower_bound(v.keyframe); found != place_.end() && v.inlier)
         at.insert(found->second);
-    for (const std::size_t v : at) around.insert(common_[v].all.begin(), common_[v].all.end());
-    return {around.begin(), around.end()};
+    std::vector<bool> is_around(views_.size());
+    for (const std::size_t v : at)
+      for (const std::size_t other : common_[v].all) is_around[other] = true;
+    std::vector<std::size_t> around;
+    for (std::size_t v = 0; v < views_.size(); ++v)
+      if (is_around[v]) around.push_back(v);
+    return around;
   }
 
   /// Adds views of keyframes that have none; false when there are none, or the line would not be known any more.

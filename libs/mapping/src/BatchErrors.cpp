@@ -43,26 +43,22 @@ class ViewStatistics {
   double products_[kLags + 1] = {}, counts_[kLags + 1] = {}, lost_ = 0;
 };
 
+constexpr std::size_t kMostBlocks = 10000;  // of residuals whose Jacobian is in memory at a time
+
 }  // namespace
 
-std::vector<CameraErrors> BatchProblem::drawErrors() {
+/// Blocks whose errors are drawn, behind those of the landmarks; `tiles`: their tangents in the tiles of ReducedSystem.
+std::vector<double*> BatchProblem::blocksOfErrors(const std::vector<std::size_t>& anchors, std::vector<int>& tiles) {
   std::vector<double*> blocks;
-  std::vector<int> tiles{kPoseTangent};
   for (std::size_t i = 0; i < points_.size(); ++i) blocks.push_back(at(points_at_ + i * kPointSize));
   for (std::size_t i = 0; i < lines_.size(); ++i) blocks.push_back(at(lines_at_ + i * kLineSize));
   blocks.push_back(at(extrinsics_at_));
+  tiles.push_back(kPoseTangent);
   for (std::size_t i = 0; i < stretches(); ++i) {
     blocks.push_back(at(correctionOf(i)));
     tiles.push_back(kCorrectionSize);
   }
-  for (std::size_t g = 0; g < groups_.size(); ++g) {
-    blocks.push_back(at(directions_at_ + g * kDirectionSize));
-    tiles.push_back(kDirectionTangent);
-  }
-  std::vector<std::size_t> anchors;
-  for (std::size_t k = 0; k < anchors_.size(); ++k) {
-    if (!isAnchor(k)) continue;
-    anchors.push_back(k);
+  for (const std::size_t k : anchors) {
     blocks.insert(blocks.end(), {at(poseAt(k)), at(motionAt(k))});
     tiles.push_back(kPoseTangent + kMotionSize);
   }
@@ -70,18 +66,43 @@ std::vector<CameraErrors> BatchProblem::drawErrors() {
     blocks.push_back(at(meanBiasOf(i)));
     tiles.push_back(kMeanBiasSize);
   }
+  return blocks;
+}
+
+std::vector<CameraErrors> BatchProblem::drawErrors() {
+  std::vector<std::size_t> anchors;
+  for (std::size_t k = 0; k < anchors_.size(); ++k)
+    if (isAnchor(k)) anchors.push_back(k);
+  std::vector<int> tiles;
   ceres::Problem::EvaluateOptions options;
-  options.parameter_blocks = blocks;
+  options.parameter_blocks = blocksOfErrors(anchors, tiles);
   options.num_threads = 1;
-  std::vector<double> residuals;
-  ceres::CRSMatrix jacobian;
-  if (!problem_->Evaluate(options, nullptr, &residuals, nullptr, &jacobian)) return {};
-  ReducedSystem system(points_.size() + lines_.size(), tiles);
-  system.add(jacobian, viewWeights(jacobian, residuals));
+  const std::size_t points = points_.size(), landmarks = points + lines_.size();
+  ReducedSystem system(landmarks, tiles);
+  std::vector<ceres::ResidualBlockId> residuals;
+  problem_->GetResidualBlocks(&residuals);
+  const auto add = [&](std::size_t from, std::size_t to, double weight) {
+    options.residual_blocks.assign(residuals.begin() + static_cast<std::ptrdiff_t>(from),
+                                   residuals.begin() + static_cast<std::ptrdiff_t>(to));
+    ceres::CRSMatrix jacobian;
+    if (from == to) return true;
+    if (!problem_->Evaluate(options, nullptr, nullptr, nullptr, &jacobian)) return false;
+    system.add(jacobian, weight);
+    return true;
+  };
+  const auto [point_weight, line_weight] = viewWeights(residuals);
+  if (!add(0, landmark_residuals_.front(), 1)) return {};
+  for (std::size_t i = 0; i < landmarks;) {  // a part of the points or of the lines at a time
+    const std::size_t end = i < points ? points : landmarks;
+    std::size_t j = i + 1;
+    while (j < end && landmark_residuals_[j + 1] - landmark_residuals_[i] <= kMostBlocks) ++j;
+    if (!add(landmark_residuals_[i], landmark_residuals_[j], i < points ? point_weight : line_weight)) return {};
+    i = j;
+  }
   return cameraErrors(system.draw(kErrorDraws), anchors);
 }
 
-/// Those of all keyframes, from draws of calibration, directions and anchors.
+/// Those of all keyframes, from draws of calibration and anchors.
 std::vector<CameraErrors> BatchProblem::cameraErrors(const Eigen::MatrixXd& drawn,
                                                      const std::vector<std::size_t>& anchors) const {
   if (drawn.size() == 0) return {};
@@ -90,8 +111,7 @@ std::vector<CameraErrors> BatchProblem::cameraErrors(const Eigen::MatrixXd& draw
   for (const RetiredKeyframe& keyframe : material_.keyframes)
     T_w_b.push_back(keyframe.T_w_b), t_ns.push_back(keyframe.t_ns);
   BodyErrors body(T_w_b, t_ns);
-  Eigen::Index row = kPoseTangent + static_cast<Eigen::Index>(stretches()) * kCorrectionSize +
-                     static_cast<Eigen::Index>(groups_.size()) * kDirectionTangent;
+  Eigen::Index row = kPoseTangent + static_cast<Eigen::Index>(stretches()) * kCorrectionSize;
   for (const std::size_t k : anchors) {
     body.set(k, drawn.middleRows<kPoseTangent>(row));
     row += kPoseTangent + kMotionSize;
@@ -101,34 +121,26 @@ std::vector<CameraErrors> BatchProblem::cameraErrors(const Eigen::MatrixXd& draw
   return body.ofCamera(material_.rig.T_b_c, drawn.topRows<kPoseTangent>());
 }
 
-std::vector<double> BatchProblem::viewWeights(const ceres::CRSMatrix& jacobian,
-                                              const std::vector<double>& residuals) const {
-  const auto points = static_cast<int>(points_.size()), landmarks = points + static_cast<int>(lines_.size());
-  const int first = 4 * landmarks;
-  // A view's rows are those with a landmark and a camera.
-  std::vector<int> landmark_of(residuals.size(), -1);
-  for (int row = 0; row < jacobian.num_rows; ++row) {
-    int landmark = -1;
-    bool camera = false;
-    for (int i = jacobian.rows[row]; i < jacobian.rows[row + 1]; ++i) {
-      if (jacobian.cols[i] < first) landmark = jacobian.cols[i] / 4;
-      camera |= jacobian.cols[i] >= first && jacobian.cols[i] < first + kPoseTangent;
-    }
-    if (camera) landmark_of[static_cast<std::size_t>(row)] = landmark;
-  }
-  std::vector<std::vector<Eigen::Vector2d>> views(static_cast<std::size_t>(landmarks));
-  for (std::size_t row = 0; row + 1 < residuals.size(); ++row) {
-    if (landmark_of[row] < 0) continue;
-    views[static_cast<std::size_t>(landmark_of[row])].emplace_back(residuals[row], residuals[row + 1]);
-    ++row;
-  }
+/// How much a view of a point and one of a line count.
+std::pair<double, double> BatchProblem::viewWeights(const std::vector<ceres::ResidualBlockId>& blocks) const {
+  const std::size_t first = landmark_residuals_.front();
+  ceres::Problem::EvaluateOptions options;
+  options.residual_blocks.assign(blocks.begin() + static_cast<std::ptrdiff_t>(first),
+                                 blocks.begin() + static_cast<std::ptrdiff_t>(landmark_residuals_.back()));
+  options.num_threads = 1;
+  std::vector<double> residuals;
+  if (options.residual_blocks.empty() || !problem_->Evaluate(options, nullptr, &residuals, nullptr, nullptr))
+    return {1, 1};
   ViewStatistics of_points, of_lines;
-  for (int i = 0; i < landmarks; ++i) (i < points ? of_points : of_lines).add(views[static_cast<std::size_t>(i)]);
-  const double point_weight = 1 / of_points.excess(), line_weight = 1 / of_lines.excess();
-  std::vector<double> weights(residuals.size(), 1.0);
-  for (std::size_t row = 0; row < residuals.size(); ++row)
-    if (landmark_of[row] >= 0) weights[row] = landmark_of[row] < points ? point_weight : line_weight;
-  return weights;
+  for (std::size_t i = 0; i + 1 < landmark_residuals_.size(); ++i) {
+    const bool is_point = i < points_.size();
+    std::vector<Eigen::Vector2d> views;
+    // the first of a point holds its length
+    for (std::size_t k = landmark_residuals_[i] + (is_point ? 1 : 0); k < landmark_residuals_[i + 1]; ++k)
+      views.emplace_back(Eigen::Vector2d::Map(&residuals[2 * (k - first)]));
+    (is_point ? of_points : of_lines).add(views);
+  }
+  return {1 / of_points.excess(), 1 / of_lines.excess()};
 }
 
 }  // namespace lintel

@@ -96,6 +96,7 @@ void BatchProblem::addPoints() {
   ceres::CostFunction* unit_length = own_factors_.back().get();
   for (std::size_t i = 0; i < points_.size(); ++i) {
     const PointRecord& point = material_.points[points_[i]];
+    landmark_residuals_.push_back(static_cast<std::size_t>(problem_->NumResidualBlocks()));
     const Eigen::Vector3d origin_w = originOf(point.views.front().keyframe);
     problem_->AddResidualBlock(unit_length, nullptr, at(points_at_ + i * kPointSize));
     for (const PointView* view : spreadViews(point.views, mostViewsOf(point))) {
@@ -112,6 +113,7 @@ void BatchProblem::addLines() {
   const CorrectionBlock correction = Eigen::Map<const CorrectionBlock>(at(correction_at_));
   for (std::size_t i = 0; i < lines_.size(); ++i) {
     const LineRecord& line = material_.lines[lines_[i]];
+    landmark_residuals_.push_back(static_cast<std::size_t>(problem_->NumResidualBlocks()));
     const Eigen::Vector3d origin_w = originOf(line.views.front().keyframe);
     for (const LineView* view : spreadViews(line.views, most_views_)) {
       const LineView& v = *view;

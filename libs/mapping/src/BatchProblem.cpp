@@ -91,6 +91,7 @@ BatchProblem::BatchProblem(const Rig& calibrated, const EstimatorParams& estimat
   addImu();
   addPoints();
   addLines();
+  landmark_residuals_.push_back(static_cast<std::size_t>(problem_->NumResidualBlocks()));
   addGroups();
 }
 

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <ceres/crs_matrix.h>
 #include <ceres/loss_function.h>
 #include <ceres/problem.h>
 
 #include <deque>
 #include <functional>
 #include <memory>
+#include <utility>
 #include <vector>
 
 #include "CarriedView.h"
@@ -57,7 +57,8 @@ class BatchProblem {
   /// Keyframes and calibration as solved, into the material. Landmarks are estimated anew by MapFitting.
   void writeBack();
 
-  /// What the adjustment leaves open of the keyframes' cameras; empty when that cannot be said.
+  /// What the adjustment leaves open of the keyframes' cameras; empty when that cannot be said. Of a problem without
+  /// groups.
   std::vector<CameraErrors> drawErrors();
 
   /// RMS of the IMU residuals without the biases' walks, in standard deviations, at the blocks' present values.
@@ -84,7 +85,8 @@ class BatchProblem {
   template <class Target>
   void addView(ImageFactor<Target>& factor, ceres::LossFunction& loss, std::size_t keyframe, double* landmark);
   std::vector<CameraErrors> cameraErrors(const Eigen::MatrixXd& drawn, const std::vector<std::size_t>& anchors) const;
-  std::vector<double> viewWeights(const ceres::CRSMatrix& jacobian, const std::vector<double>& residuals) const;
+  std::vector<double*> blocksOfErrors(const std::vector<std::size_t>& anchors, std::vector<int>& tiles);
+  std::pair<double, double> viewWeights(const std::vector<ceres::ResidualBlockId>& blocks) const;
   bool isAnchor(std::size_t k) const;
   double anchorCount() const;
   Carriage carriage(std::size_t k) const;
@@ -133,6 +135,7 @@ class BatchProblem {
   std::deque<LineFactor> line_factors_;
   std::vector<std::pair<std::size_t, std::unique_ptr<ImuFactor>>> imu_factors_;  // with the later keyframe's place
   std::vector<std::unique_ptr<ImuFactor>> anchor_imu_factors_;                   // from anchor to anchor
+  std::vector<std::size_t> landmark_residuals_;  // the first residual block of each point, of each line; then the end
   std::vector<CarriedResidual> carried_views_;
   std::vector<std::unique_ptr<ceres::CostFunction>> own_factors_;  // the others
   std::unique_ptr<ceres::Problem> problem_;

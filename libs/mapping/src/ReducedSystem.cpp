@@ -2,10 +2,11 @@
 #include "ReducedSystem.h"
 
 #include <Eigen/Cholesky>
-#include <Eigen/SparseCholesky>
 #include <algorithm>
 #include <cmath>
 #include <random>
+
+#include "SparseFactor.h"
 
 namespace lintel {
 
@@ -34,22 +35,22 @@ ReducedSystem::ReducedSystem(std::size_t landmarks, const std::vector<int>& tile
   }
 }
 
-void ReducedSystem::add(const ceres::CRSMatrix& jacobian, const std::vector<double>& weights) {
-  std::vector<std::vector<int>> rows_of(static_cast<std::size_t>(landmarks_));
+void ReducedSystem::add(const ceres::CRSMatrix& jacobian, double weight) {
+  std::map<int, std::vector<int>> rows_of;
   for (int row = 0; row < jacobian.num_rows; ++row) {
     int landmark = landmarks_;
     for (int i = jacobian.rows[row]; i < jacobian.rows[row + 1]; ++i)
       landmark = std::min(landmark, jacobian.cols[i] / kLandmark);
     if (landmark < landmarks_)
-      rows_of[static_cast<std::size_t>(landmark)].push_back(row);
+      rows_of[landmark].push_back(row);
     else
-      addRows(jacobian, weights, {row}, landmarks_);
+      addRows(jacobian, weight, {row}, landmarks_);
   }
-  for (int i = 0; i < landmarks_; ++i) addRows(jacobian, weights, rows_of[static_cast<std::size_t>(i)], i);
+  for (const auto& [landmark, rows] : rows_of) addRows(jacobian, weight, rows, landmark);
 }
 
-void ReducedSystem::addRows(const ceres::CRSMatrix& jacobian, const std::vector<double>& weights,
-                            const std::vector<int>& rows, int landmark) {
+void ReducedSystem::addRows(const ceres::CRSMatrix& jacobian, double weight, const std::vector<int>& rows,
+                            int landmark) {
   const int first = kLandmark * landmarks_;
   std::vector<int> columns;
   for (const int row : rows)
@@ -63,10 +64,9 @@ void ReducedSystem::addRows(const ceres::CRSMatrix& jacobian, const std::vector<
   Eigen::MatrixXd J = Eigen::MatrixXd::Zero(n, kLandmark);
   for (Eigen::Index r = 0; r < n; ++r) {
     const int row = rows[static_cast<std::size_t>(r)];
-    const double weight = std::sqrt(weights[static_cast<std::size_t>(row)]);
     for (int i = jacobian.rows[row]; i < jacobian.rows[row + 1]; ++i) {
       const int column = jacobian.cols[i];
-      const double value = weight * jacobian.values[static_cast<std::size_t>(i)];
+      const double value = jacobian.values[static_cast<std::size_t>(i)];
       if (column >= first)
         A(r, std::lower_bound(columns.begin(), columns.end(), column - first) - columns.begin()) = value;
       else
@@ -77,16 +77,16 @@ void ReducedSystem::addRows(const ceres::CRSMatrix& jacobian, const std::vector<
   if (landmark < landmarks_) {
     const Eigen::MatrixXd W = J.transpose() * A;
     const Eigen::Matrix4d H = J.transpose() * J;
-    const Eigen::LLT<Eigen::Matrix4d> root(H + 1e-9 * H.trace() * Eigen::Matrix4d::Identity());
-    if (root.info() != Eigen::Success) return;
-    const Eigen::MatrixXd U = root.matrixL().solve(W);
+    const Eigen::LLT<Eigen::Matrix4d> factor(H + 1e-9 * H.trace() * Eigen::Matrix4d::Identity());
+    if (factor.info() != Eigen::Success) return;
+    const Eigen::MatrixXd U = factor.matrixL().solve(W);
     G -= U.transpose() * U;
   }
-  scatter(columns, G);
+  scatter(columns, weight * G);
 }
 
 Eigen::MatrixXd& ReducedSystem::tile(int a, int b) {
-  Eigen::MatrixXd& t = tiles_[{a, b}];
+  Eigen::MatrixXd& t = tiles_[{b, a}];
   const auto size = [this](int i) {
     return begins_[static_cast<std::size_t>(i) + 1] - begins_[static_cast<std::size_t>(i)];
   };
@@ -116,25 +116,33 @@ void ReducedSystem::scatter(const std::vector<int>& columns, const Eigen::Matrix
   }
 }
 
+/// Without the zeros of the tiles: poses meet in many of them, velocities and biases in few.
+Eigen::SparseMatrix<double> ReducedSystem::lowerTriangle() const {
+  const auto forEach = [this](const auto& visit) {  // of each column the rows ascend
+    for (const auto& [place, t] : tiles_)
+      for (Eigen::Index c = 0; c < t.cols(); ++c)
+        for (Eigen::Index r = place.first == place.second ? c : 0; r < t.rows(); ++r)
+          if (t(r, c) != 0)
+            visit(begins_[static_cast<std::size_t>(place.second)] + r,
+                  begins_[static_cast<std::size_t>(place.first)] + c, t(r, c));
+  };
+  Eigen::VectorXi entries = Eigen::VectorXi::Zero(begins_.back());
+  forEach([&](Eigen::Index, Eigen::Index column, double) { ++entries(column); });
+  Eigen::SparseMatrix<double> S(begins_.back(), begins_.back());
+  S.reserve(entries);
+  forEach([&](Eigen::Index row, Eigen::Index column, double value) { S.insert(row, column) = value; });
+  S.makeCompressed();
+  return S;
+}
+
 Eigen::MatrixXd ReducedSystem::draw(int count) const {
-  const int n = begins_.back();
-  std::vector<Eigen::Triplet<double>> entries;
-  for (const auto& [place, t] : tiles_)
-    for (Eigen::Index c = 0; c < t.cols(); ++c)
-      for (Eigen::Index r = 0; r < t.rows(); ++r) {
-        const int row = begins_[static_cast<std::size_t>(place.first)] + static_cast<int>(r);
-        const int column = begins_[static_cast<std::size_t>(place.second)] + static_cast<int>(c);
-        if (row >= column && t(r, c) != 0) entries.emplace_back(row, column, t(r, c));
-      }
-  Eigen::SparseMatrix<double> S(n, n);
-  S.setFromTriplets(entries.begin(), entries.end());
-  const Eigen::SimplicialLLT<Eigen::SparseMatrix<double>> root(S);
-  if (root.info() != Eigen::Success) return {};
+  const SparseFactor factor(lowerTriangle());
+  if (!factor.usable()) return {};
   Normal normal;
-  Eigen::MatrixXd z(n, count);
-  for (Eigen::Index c = 0; c < count; ++c)
-    for (Eigen::Index r = 0; r < n; ++r) z(r, c) = normal();
-  Eigen::MatrixXd x = root.permutationPinv() * root.matrixU().solve(z);
+  Eigen::MatrixXd z(begins_.back(), count);
+  for (Eigen::Index c = 0; c < z.cols(); ++c)
+    for (Eigen::Index r = 0; r < z.rows(); ++r) z(r, c) = normal();
+  Eigen::MatrixXd x = factor.solveTransposed(z);
   if (!x.allFinite()) return {};
   return x;
 }

@@ -4,6 +4,7 @@
 #include <ceres/crs_matrix.h>
 
 #include <Eigen/Core>
+#include <Eigen/SparseCore>
 #include <map>
 #include <utility>
 #include <vector>
@@ -21,26 +22,24 @@ class ReducedSystem {
   /// `tiles`: columns of each tile, in their order.
   ReducedSystem(std::size_t landmarks, const std::vector<int>& tiles);
 
-  /// Adds the residuals, each row weighted by its part of `weights`.
-  void add(const ceres::CRSMatrix& jacobian, const std::vector<double>& weights);
+  /// Adds residuals, each row with the given weight. All that a landmark has must come in one call.
+  void add(const ceres::CRSMatrix& jacobian, double weight);
 
   /// Draws of the states' errors, N(0, S^-1), one a column; the same every time. Empty when S is singular.
   Eigen::MatrixXd draw(int count) const;
 
  private:
-  using Row = std::pair<int, int>;  // of the Jacobian: from, to
-
-  void addRows(const ceres::CRSMatrix& jacobian, const std::vector<double>& weights, const std::vector<int>& rows,
-               int landmark);
+  void addRows(const ceres::CRSMatrix& jacobian, double weight, const std::vector<int>& rows, int landmark);
   void scatter(const std::vector<int>& columns, const Eigen::MatrixXd& G);
   Eigen::MatrixXd& tile(int a, int b);
+  Eigen::SparseMatrix<double> lowerTriangle() const;
 
   static constexpr int kLandmark = 4;  // columns
 
   int landmarks_;
   std::vector<int> begins_;                               // of the tiles; the last entry is the end
   std::vector<int> tile_of_;                              // by column of the states
-  std::map<std::pair<int, int>, Eigen::MatrixXd> tiles_;  // a >= b
+  std::map<std::pair<int, int>, Eigen::MatrixXd> tiles_;  // by (b, a) with a >= b: rows of a, columns of b
 };
 
 }  // namespace lintel

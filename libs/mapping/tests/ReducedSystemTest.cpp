@@ -36,15 +36,19 @@ Eigen::MatrixXd jacobian() {
 
 TEST(ReducedSystem, ErrorsAreDrawnAsTheWholeSystemSays) {
   const Eigen::MatrixXd J = jacobian();
-  std::vector<double> weights;
-  weights.reserve(static_cast<std::size_t>(J.rows()));
-  for (int r = 0; r < J.rows(); ++r) weights.push_back(r % 3 == 0 ? 0.5 : 2);
-  const Eigen::VectorXd w = Eigen::VectorXd::Map(weights.data(), J.rows());
+  Eigen::VectorXd w(J.rows());
+  for (int r = 0; r < J.rows(); ++r) w(r) = r % 3 == 0 ? 0.5 : 2;
   const Eigen::MatrixXd whole = (J.transpose() * w.asDiagonal() * J).inverse();
   const Eigen::MatrixXd expected = whole.bottomRightCorner(5, 5);
 
+  // the rows of a landmark together, as they have the same weight
   ReducedSystem system(2, {2, 3});
-  system.add(crsOf(J), weights);
+  for (int landmark = 0; landmark < 3; ++landmark) {
+    Eigen::MatrixXd rows = J;
+    for (int r = 0; r < J.rows(); ++r)
+      if (r % 3 != landmark) rows.row(r).setZero();
+    system.add(crsOf(rows), landmark == 0 ? 0.5 : 2);
+  }
   constexpr int kMany = 20000;
   const Eigen::MatrixXd drawn = system.draw(kMany);
   ASSERT_EQ(drawn.rows(), 5);
@@ -57,7 +61,7 @@ TEST(ReducedSystem, WhatIsNotDeterminedGivesNone) {
   Eigen::MatrixXd J = jacobian();
   J.col(10).setZero();
   ReducedSystem system(2, {2, 3});
-  system.add(crsOf(J), std::vector<double>(static_cast<std::size_t>(J.rows()), 1.0));
+  system.add(crsOf(J), 1);
   EXPECT_EQ(system.draw(3).size(), 0);
 }
 
