@@ -7,6 +7,7 @@
 #include <stdexcept>
 
 #include "BatchProblem.h"
+#include "CameraErrors.h"
 #include "Evidence.h"
 #include "KeyframeClusters.h"
 #include "LineGroups.h"
@@ -320,6 +321,7 @@ RefinementReport BatchRefinement::adjust(MapMaterial& material, const Refinement
             [](const PointRecord& a, const PointRecord& b) { return a.id < b.id; });
   prepareMaterial(map_, material);
   material.camera_errors = errorsOf(material);
+  report.scale_sigma = scaleSigma(material);
   return report;
 }
 

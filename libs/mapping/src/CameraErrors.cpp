@@ -69,6 +69,24 @@ std::vector<CameraErrors> BodyErrors::ofCamera(const Pose& T_b_c, const Draws& e
   return result;
 }
 
+double scaleSigma(const MapMaterial& material) {
+  if (material.camera_errors.empty()) return 0;
+  std::vector<Eigen::Vector3d> centres_w;
+  Eigen::Vector3d middle = Eigen::Vector3d::Zero();
+  for (const RetiredKeyframe& keyframe : material.keyframes) {
+    centres_w.push_back(keyframe.T_w_b * material.rig.T_b_c.p);
+    middle += centres_w.back() / static_cast<double>(material.keyframes.size());
+  }
+  double squares = 0;
+  Eigen::Matrix<double, 1, kErrorDraws> along = Eigen::Matrix<double, 1, kErrorDraws>::Zero();
+  for (std::size_t k = 0; k < centres_w.size(); ++k) {
+    const Eigen::Vector3d arm = centres_w[k] - middle;
+    squares += arm.squaredNorm();
+    along += arm.transpose() * material.camera_errors[k].topRows<3>().cast<double>();
+  }
+  return squares > 0 ? along.norm() / squares / std::sqrt(static_cast<double>(kErrorDraws)) : 0;
+}
+
 namespace {
 
 /// What holds a tied line beside its views.

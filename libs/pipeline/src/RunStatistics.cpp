@@ -114,6 +114,7 @@ Json refinementJson(const OdometryResult& result) {
           {"imu_sigmas", {r.imu_before, r.imu_after}},
           {"moved_m", r.moved_m},
           {"turned_rad", r.turned_rad},
+          {"scale_sigma", r.scale_sigma},
           {"time_offset_change_s", {r.least_offset_s, r.most_offset_s}}};
 }
 

@@ -9,6 +9,7 @@
 #include <iterator>
 #include <limits>
 #include <optional>
+#include <set>
 
 #include "initialisation/GravityAlignment.h"
 #include "initialisation/GyroAlignment.h"
@@ -28,6 +29,7 @@ namespace lintel {
 
 namespace {
 
+constexpr double kNoLoss = 1e6;  // Cauchy width [standard deviations]
 constexpr double kKnownOffset_s = 0.002, kKnownReadout_s = 0.001;
 // Of k1 and k2, which move points at the image's corners by as many pixels as the focal length has hundreds.
 constexpr double kKnownDistortion = 0.02;
@@ -132,7 +134,7 @@ std::string Initializer::startMoving(SlidingWindow& window) const {
   const double parallax = longestParallaxPx(window);
   const double half = medianDisparityPx(window, window.frames.size() / 2, window.frames.size() - 1, true);
   // With a full buffer waiting adds no parallax: the sigma of the scale decides then.
-  const bool full = static_cast<int>(window.frames.size()) >= params_.initializer.max_frames;
+  const bool full = isFull(window);
   if (std::max(parallax, half) < params_.initializer.min_parallax_px * (full ? 0.5 : 1)) return "waiting for parallax";
 
   const GyroAlignment gyro = alignGyro(window);
@@ -177,7 +179,7 @@ std::string Initializer::tryMoving(const Eigen::Vector3d& bias_gyro, SlidingWind
   }
   levelAndCentre(trial);
   // Waiting does not help when the buffer is full: the start is judged when it has been adjusted.
-  const bool full = static_cast<int>(trial.frames.size()) >= params_.initializer.max_frames;
+  const bool full = isFull(trial);
   if (!adjustWithLens(full ? Gates::kNone : Gates::kHopeless, trial)) return kScaleUnknown;
   int candidates = 0;
   std::vector<double> errors = errorsPx(trial, candidates);
@@ -206,10 +208,14 @@ void Initializer::tryOtherScales(SlidingWindow& best) const {
   }
 }
 
+bool Initializer::isFull(const SlidingWindow& window) const {
+  return static_cast<int>(window.frames.size()) >= params_.initializer.max_frames;
+}
+
 bool Initializer::adjustWithLens(Gates gates, SlidingWindow& trial) const {
   CalibrationParams held = params_.calibration;
-  held.refine_camera = false;
-  if (!distortionUnknown()) return adjust(held, gates, trial);
+  held.refine_camera &= isFull(trial);
+  if (!distortionUnknown() || isFull(trial)) return adjust(held, gates, trial);
   SlidingWindow bent = trial;
   if (!adjust(held, gates, trial)) return false;
   if (adjust(params_.calibration, gates, bent) && misfitOf(bent) < kClearlyBetter * misfitOf(trial))
@@ -243,15 +249,22 @@ double Initializer::misfitOf(SlidingWindow& window) const {
   return sum;
 }
 
+CalibrationParams Initializer::refinedIn(const SlidingWindow& window, CalibrationParams calibration) const {
+  if (isFull(window))
+    calibration.loss_width = kNoLoss;
+  else
+    calibration.refine_extrinsics = false;
+  // what is known from a search alone, to some milliseconds, would be taken for a bias
+  calibration.refine_time_offset &= calibration.time_offset_sigma_s > kKnownOffset_s;
+  calibration.refine_readout &= calibration.readout_sigma_s > kKnownReadout_s;
+  return calibration;
+}
+
 bool Initializer::adjust(const CalibrationParams& calibration, Gates gates, SlidingWindow& window) const {
   setBiasPrior(window, MotionBlock::Zero(), params_.initializer.bias_gyro_sigma,
                std::numeric_limits<double>::infinity());
   const bool gated = gates == Gates::kHopeless;
-  CalibrationParams frozen = calibration;
-  frozen.refine_extrinsics = false;
-  // what is known from a search alone, to some milliseconds, would be taken for a bias
-  frozen.refine_time_offset &= frozen.time_offset_sigma_s > kKnownOffset_s;
-  frozen.refine_readout &= frozen.readout_sigma_s > kKnownReadout_s;
+  const CalibrationParams refined = refinedIn(window, calibration);
   LandmarkParams loose = params_.landmarks;
   // The first poses are rough: their errors are angles, and so are these limits.
   const double scale = pixelScale(window.camera());
@@ -266,9 +279,8 @@ bool Initializer::adjust(const CalibrationParams& calibration, Gates gates, Slid
     factors.addImu();
     factors.addPoints();
     factors.addGauge();
-    if (frozen.refine_time_offset || frozen.refine_readout || frozen.refine_camera)
-      factors.addCalibrationPriors(frozen, T_b_c_calibrated_);
-    solveWindow(window, factors.factors(), frozen, limitsOf(round + 1 == kRounds));
+    factors.addCalibrationPriors(refined, T_b_c_calibrated_);
+    solveWindow(window, factors.factors(), refined, limitsOf(round + 1 == kRounds));
     window.relinearise();
     loose.point_max_error_px = round == 0 ? 8 * scale : params_.landmarks.point_max_error_px;
     const CameraPoses poses(window);
@@ -318,7 +330,14 @@ double Initializer::relativeScaleSigma(SlidingWindow& window) const {
   factors.addImu();
   factors.addPoints();
   factors.addGauge();
-  ReducedSystem system(window, factors.factors(), {}, {{BlockKey::kExtrinsics, 0}, {BlockKey::kCorrection, 0}});
+  std::set<BlockKey> frozen;
+  const CalibrationParams refined = refinedIn(window, params_.calibration);
+  if (isFull(window))
+    factors.addCalibrationPriors(refined, T_b_c_calibrated_);
+  else
+    frozen = {{BlockKey::kExtrinsics, 0}, {BlockKey::kCorrection, 0}};
+  ReducedSystem system(window, factors.factors(), {}, frozen);
+  if (isFull(window)) holdCalibration(system, refined);
   system.linearise();
   constexpr double kFloor = 1e-9;
   const Marginals marginals(system.eliminate(), kFloor);

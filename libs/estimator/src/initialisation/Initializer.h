@@ -37,6 +37,10 @@ class Initializer {
   /// Whether an adjustment is left as soon as the scale turns out to be far from known.
   enum class Gates { kNone, kHopeless };
   bool adjust(const CalibrationParams& calibration, Gates gates, SlidingWindow& window) const;
+  bool isFull(const SlidingWindow& window) const;
+  /// What is refined of `calibration` in a start. A second or two of strong motion hardly show the calibration, nor do
+  /// its errors matter; a full buffer means gentle motion, where they are taken for accelerations.
+  CalibrationParams refinedIn(const SlidingWindow& window, CalibrationParams calibration) const;
   /// With k1 and k2 free as well, where they are not given and that fits clearly better.
   bool adjustWithLens(Gates gates, SlidingWindow& trial) const;
   void tryOtherScales(SlidingWindow& best) const;
