@@ -218,7 +218,7 @@ void Estimator::Impl::initialise(WindowUpdate& update) {
   update.reason = initializer_.initialise(buffer);
   if (!update.reason.empty()) {
     if (static_cast<int>(buffer.frames.size()) < params_.initializer.max_frames) return;
-    waits_for_scale_ = update.reason == Initializer::kScaleUnknown;
+    waits_for_scale_ = update.reason == kScaleUnknown;
     frames_to_wait_ = kFramesBetweenTries;
     waits_for_ = update.reason;
     return;

@@ -148,7 +148,7 @@ std::string RunCheck::imuFault() const {
   return text;
 }
 
-std::string RunCheck::cause() const {
+std::string RunCheck::cause(const OdometryStatistics& s) const {
   if (std::string fault = images_.fault(); !fault.empty()) return fault;
   if (std::string fault = turns_.fault(Suspicion::kSome, clock_offset_s_); !fault.empty()) return fault;
   if (std::string fault = accelerometer_.axesFault(); !fault.empty()) return fault;
@@ -158,10 +158,12 @@ std::string RunCheck::cause() const {
                   lever_m);
     return text;
   }
-  if (turns_.agree())
-    return "camera and gyroscope turn together, so look at the accelerometer (its sign: at rest it shows 9.8 m/s^2 "
-           "upwards; axes, unit), the distance in T_BS, the focal length and the distortion";
-  return {};
+  if (!turns_.agree()) return {};
+  if (s.frames_with_pose == 0 && s.last_wait == kScaleUnknown)
+    return "the camera may accelerate too little to show the scale above the IMU's noise: start where it moves more "
+           "strongly (--from), or look at the accelerometer (its sign: at rest it shows 9.8 m/s^2 upwards; unit)";
+  return "camera and gyroscope turn together, so look at the accelerometer (its sign: at rest it shows 9.8 m/s^2 "
+         "upwards; axes, unit), the distance in T_BS, the focal length and the distortion";
 }
 
 std::string RunCheck::verdict(const OdometryStatistics& s, const Rig& estimated) const {
@@ -172,7 +174,7 @@ std::string RunCheck::verdict(const OdometryStatistics& s, const Rig& estimated)
   const bool no_pose = s.frames_with_pose == 0;
   std::string fault = no_pose ? "no pose was found (" + s.last_wait + ")" : symptom(s, estimated);
   if (fault.empty()) return fault;
-  const std::string likely = cause();
+  const std::string likely = cause(s);
   if (!likely.empty()) return fault + "; " + likely;
   return no_pose ? "" : fault + "; check that IMU and images belong together, T_BS of both, and the calibration";
 }

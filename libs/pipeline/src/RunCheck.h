@@ -57,7 +57,7 @@ class RunCheck {
   std::string symptom(const OdometryStatistics& statistics, const Rig& estimated) const;
   /// Where the residuals of the IMU are too large for its noise; empty: nowhere.
   std::string imuFault() const;
-  std::string cause() const;  ///< what may be behind it; empty: unknown
+  std::string cause(const OdometryStatistics& s) const;  ///< what may be behind it; empty: unknown
 
   Rig rig_;
   double clock_offset_s_;

@@ -6,7 +6,13 @@
 #include <algorithm>
 #include <cmath>
 #include <memory>
+#include <optional>
 #include <vector>
+
+#include "lintel/geometry/Rotation.h"
+#include "lintel/simulation/EurocRig.h"
+#include "lintel/simulation/FigureTrajectory.h"
+#include "lintel/simulation/TrackSimulation.h"
 
 namespace lintel {
 namespace {
@@ -134,6 +140,41 @@ double axesMisfitOfCircles(const Eigen::Vector3d& known_bias) {
 TEST(RunCheck, TheGyroscopesBiasIsNoTurnOfGravity) {
   EXPECT_GT(axesMisfitOfCircles({0, 0, 0}), 1.2) << "mixed up axes would fit better";
   EXPECT_EQ(axesMisfitOfCircles({0.06, 0.02, 0.07}), 1);
+}
+
+/// Of a run whose images, gyroscope and accelerometer are right, and that found no pose for the reason `wait`.
+std::string verdictWithoutPose(const std::string& wait) {
+  TrackSimulationParams tracks;
+  tracks.duration_s = 12;
+  const SimulatedTracks flight = simulateTracks(FigureTrajectory(), eurocRig(), ImuSimulatorParams{}, tracks);
+  std::vector<std::uint8_t> pixels;
+  for (int k = 0; k < 64 * 64; ++k) pixels.push_back(static_cast<std::uint8_t>(37 * k % 251));
+  RunCheck check{eurocRig()};
+  OdometryStatistics statistics;
+  std::optional<Eigen::Quaterniond> before;
+  std::int64_t from_ns = 0;
+  for (const SimulatedFrame& frame : flight.frames) {
+    TrackedFrame tracked;
+    std::rotate(pixels.begin(), pixels.begin() + 5, pixels.end());
+    tracked.step.frame.image = std::make_shared<GrayImage>(GrayImage{64, 64, pixels});
+    tracked.step.frame.t_ns = frame.tracks.t_ns;
+    tracked.step.imu = frame.imu;
+    const Eigen::Quaterniond R_w_c = frame.truth.state.T_w_b.q * eurocRig().T_b_c.q;
+    if (before)
+      tracked.turn = {from_ns, frame.tracks.t_ns, logRotation(before->conjugate() * R_w_c),
+                      Eigen::Vector3d::Constant(0.001)};
+    before = R_w_c, from_ns = frame.tracks.t_ns;
+    check.add(tracked, {});
+    ++statistics.frames;
+  }
+  statistics.last_wait = wait;
+  return check.verdict(statistics, eurocRig());
+}
+
+TEST(RunCheck, WhereOnlyTheScaleIsMissingTheMotionIsNamedBeforeTheAccelerometer) {
+  EXPECT_NE(verdictWithoutPose(kScaleUnknown).find("may accelerate too little"), std::string::npos);
+  EXPECT_NE(verdictWithoutPose("too few points agree with the motion").find("so look at the accelerometer"),
+            std::string::npos);
 }
 
 /// Half a minute of turning about x; each second keyframe jumps.

@@ -16,6 +16,7 @@
 #include "landmarks/PointTriangulation.h"
 #include "lintel/core/Quantiles.h"
 #include "lintel/estimator/StatePriors.h"
+#include "lintel/estimator/WindowUpdate.h"
 #include "lintel/geometry/Frames.h"
 #include "lintel/geometry/Rotation.h"
 #include "solver/Marginals.h"

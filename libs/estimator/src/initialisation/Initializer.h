@@ -19,11 +19,8 @@ class Initializer {
 
   /// Tries on all frames of `window`. On success its states, points and priors are set (first frame at the origin,
   /// yaw 0) and the result is empty; else the window is unchanged in frames and tracks, and the result says in words
-  /// what is waited for.
+  /// what is waited for (kScaleUnknown where it is only the scale).
   std::string initialise(SlidingWindow& window) const;
-
-  /// What initialise() says where everything fits, but the scale is not known well enough.
-  static constexpr char kScaleUnknown[] = "waiting for a motion that shows the scale";
 
   /// True when points and IMU say that nothing moves over the whole buffer.
   bool atRest(const SlidingWindow& window) const;

@@ -53,6 +53,9 @@ enum class EstimatorStatus {
   kLost,          ///< failure: the window was given up at this frame, initialisation starts again
 };
 
+/// The reason of a frame without a pose where all that a start lacks is its scale.
+inline constexpr char kScaleUnknown[] = "waiting for a motion that shows the scale";
+
 /// Why the window was given up.
 enum class Failure {
   kNone,
