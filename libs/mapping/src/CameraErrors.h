@@ -34,8 +34,8 @@ class BodyErrors {
   std::vector<Draws> errors_;
 };
 
-/// Relative standard deviation of the size of everything: of the scale in which the drawn ways of the cameras differ from
-/// the estimated one. 0 when errors are not known, or for a camera that stays in one place.
+/// Relative standard deviation of the size of everything: of the scale in which the drawn ways of the cameras differ
+/// from the estimated one. 0 when errors are not known, or for a camera that stays in one place.
 double scaleSigma(const MapMaterial& material);
 
 /// What errors of the cameras make of a line that is fitted to its views: the covariance of (a, b) (LineFitting.h) that

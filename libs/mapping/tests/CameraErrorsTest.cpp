@@ -97,5 +97,30 @@ TEST(BodyErrors, BetweenTwoTheyAreInterpolated) {
   EXPECT_NEAR(body.ofCamera({}, BodyErrors::Draws::Zero())[1](0, 0), 2, 1e-6);
 }
 
+/// Cameras whose drawn ways are `scale` times 1, -1, 1 … larger than the estimated one, and shifted.
+MapMaterial scaledDraws(double scale) {
+  MapMaterial material;
+  for (int k = 0; k < 20; ++k) {
+    RetiredKeyframe keyframe;
+    keyframe.T_w_b.p = {std::sin(0.4 * k), 0.1 * k, 0.3 * std::cos(0.7 * k)};
+    material.keyframes.push_back(keyframe);
+    CameraErrors errors = CameraErrors::Zero();
+    for (int n = 0; n < kErrorDraws; ++n)
+      errors.col(n).head<3>() =
+          ((n % 2 ? -scale : scale) * keyframe.T_w_b.p + Eigen::Vector3d(0.1, 0.2, n)).cast<float>();
+    material.camera_errors.push_back(errors);
+  }
+  return material;
+}
+
+TEST(ScaleSigma, IsThatOfTheDrawnWays) {
+  EXPECT_NEAR(scaleSigma(scaledDraws(0.02)), 0.02, 1e-6);
+  EXPECT_NEAR(scaleSigma(scaledDraws(0)), 0, 1e-6);
+  MapMaterial in_one_place = scaledDraws(0.02);
+  for (RetiredKeyframe& keyframe : in_one_place.keyframes) keyframe.T_w_b.p.setZero();
+  EXPECT_EQ(scaleSigma(in_one_place), 0);
+  EXPECT_EQ(scaleSigma(MapMaterial{}), 0);
+}
+
 }  // namespace
 }  // namespace lintel
