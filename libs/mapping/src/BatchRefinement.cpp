@@ -25,6 +25,8 @@ namespace {
 // classified anew after every round but the last: those need not converge.
 constexpr double kFirstGain = 0.3, kLastGain = 0.04;
 
+constexpr double kAccelerometerScale = 0.005;  // standard deviation of a calibrated one's: no residual shows it
+
 /// The groups of the lines that would be drawn now.
 std::vector<ParallelLines> parallelLines(const MapParams& params, const MapMaterial& material) {
   const LineMap map = drawMap(params, material);
@@ -313,15 +315,18 @@ RefinementReport BatchRefinement::adjust(MapMaterial& material, const Refinement
     report.verdict = "not refined: " + reason;
     return report;
   }
-  report.verdict =
-      text("refined: keyframes moved by up to %.3f m; points without part in it fit to %.2f px (before %.2f)",
-           report.moved_m, report.held_out_after_px, report.held_out_before_px);
   material.points.insert(material.points.end(), held_out.begin(), held_out.end());
   std::sort(material.points.begin(), material.points.end(),
             [](const PointRecord& a, const PointRecord& b) { return a.id < b.id; });
   prepareMaterial(map_, material);
   material.camera_errors = errorsOf(material);
-  report.scale_sigma = scaleSigma(material);
+  report.verdict =
+      text("refined: keyframes moved by up to %.3f m; points without part in it fit to %.2f px (before %.2f)",
+           report.moved_m, report.held_out_after_px, report.held_out_before_px);
+  if (!material.camera_errors.empty()) {
+    report.scale_sigma = std::hypot(scaleSigma(material), kAccelerometerScale);
+    report.verdict += text("; the size of everything is known to %.1f %%", 100 * report.scale_sigma);
+  }
   return report;
 }
 

@@ -157,6 +157,9 @@ TEST_F(BatchRefinementTest, TakesTheDriftAway) {
   EXPECT_LT(report.imu_after, 1.5);
   EXPECT_EQ(material_.trajectory.size(), flight_.frames.size()) << "every frame has a refined pose";
   EXPECT_NE(report.verdict.find("refined"), std::string::npos);
+  EXPECT_NE(report.verdict.find("; the size of everything is known to "), std::string::npos) << report.verdict;
+  EXPECT_GT(report.scale_sigma, 0.005) << "the accelerometer's own scale";
+  EXPECT_LT(report.scale_sigma, 0.02);
 }
 
 /// On long flights each landmark has fewer views in the adjustment.

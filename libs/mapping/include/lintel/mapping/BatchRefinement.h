@@ -87,7 +87,8 @@ struct RefinementReport {
   double imu_before = 0, imu_after = 0;          ///< RMS, standard deviations
   double moved_m = 0, turned_rad = 0;            ///< most, of a keyframe
   double least_offset_s = 0, most_offset_s = 0;  ///< of the keyframes, between the clocks, beside their mean
-  double scale_sigma = 0;  ///< relative standard deviation of the size of everything, by what the residuals leave open
+  double scale_sigma = 0;  ///< relative standard deviation of the size of everything: by what the residuals leave open,
+                           ///< and by the accelerometer's own scale
 };
 
 /// Called at every iteration with the share that is done, in [0, 1]. Its result below 1 says whether to go on: after
