@@ -82,10 +82,10 @@ std::vector<CameraErrors> BatchProblem::drawErrors() {
   std::vector<ceres::ResidualBlockId> residuals;
   problem_->GetResidualBlocks(&residuals);
   const auto add = [&](std::size_t from, std::size_t to, double weight) {
+    if (from == to) return true;
     options.residual_blocks.assign(residuals.begin() + static_cast<std::ptrdiff_t>(from),
                                    residuals.begin() + static_cast<std::ptrdiff_t>(to));
     ceres::CRSMatrix jacobian;
-    if (from == to) return true;
     if (!problem_->Evaluate(options, nullptr, nullptr, nullptr, &jacobian)) return false;
     system.add(jacobian, weight);
     return true;
