@@ -240,6 +240,7 @@ double Initializer::misfitOf(SlidingWindow& window) const {
   WindowFactors factors(window, params_.factors);
   factors.addPriors();
   factors.addImu();
+  if (isFull(window)) factors.addCalibrationPriors(refinedIn(window, params_.calibration), T_b_c_calibrated_);
   for (const Factor& factor : factors.factors()) {
     std::vector<const double*> blocks;
     for (const BlockKey& key : factor.blocks) blocks.push_back(window.block(key));
