@@ -2,6 +2,7 @@
 #include <cmath>
 #include <filesystem>
 
+#include "ArrivalStream.h"
 #include "BagStream.h"
 #include "EurocFolder.h"
 #include "EurocStream.h"
@@ -53,7 +54,7 @@ RecordingParams withPublishedCalibration(const std::string& path, RecordingParam
 std::unique_ptr<SensorStream> openStream(const std::string& path, const RecordingParams& own_params) {
   const RecordingParams params = withPublishedCalibration(path, own_params);
   const GivenCalibration given(params);
-  std::unique_ptr<SensorStream> stream = openUnshifted(path, params, given);
+  std::unique_ptr<SensorStream> stream = std::make_unique<ArrivalStream>(openUnshifted(path, params, given));
   if (given.shift_ns() == 0) return stream;
   return std::make_unique<ShiftedStream>(std::move(stream), given.shift_ns());
 }

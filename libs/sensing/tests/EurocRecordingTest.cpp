@@ -99,6 +99,37 @@ TEST_F(EurocRecordingTest, TheFirstBatchHoldsHalfASecond) {
   EXPECT_LT(imu.front().t_ns, imu.back().t_ns - 494000000);
 }
 
+TEST_F(EurocRecordingTest, SamplesThatCameInPacketsHaveTimesOfTheirOwn) {
+  TinyEuroc longer;
+  longer.frames = 100;
+  longer.write(root_);
+  const std::string table = root_ + "/mav0/imu0/data.csv";
+  std::istringstream lines(bytesOf(table));
+  std::string header, line, text;
+  std::getline(lines, header);
+  std::vector<std::string> stamps, values;
+  while (std::getline(lines, line)) {
+    stamps.push_back(line.substr(0, line.find(',')));
+    values.push_back(line.substr(line.find(',')));
+  }
+  for (std::size_t i = 0; i < stamps.size(); ++i) {
+    const std::size_t last = std::min(i / 4 * 4 + 3, stamps.size() - 1);
+    text += std::to_string(std::stoll(stamps[last]) + 200'000 * static_cast<std::int64_t>(i % 4)) + values[i] + "\n";
+  }
+  writeText(table, header + "\n" + text);
+  const Everything all = readAll(root_);
+  EXPECT_EQ(all.error, "");
+  EXPECT_THAT(all.warnings, Contains(HasSubstr("in packets of about 4")));
+  ASSERT_EQ(all.steps.size(), 100U);
+  for (std::size_t f = 30; f < 70; ++f)
+    for (const ImuSample& sample : all.steps[f].imu) {
+      // on average they arrive 7.8 ms after they were taken
+      const Eigen::Vector3d late = sample.gyro - TinyEuroc::gyroAt(sample.t_ns - 7'800'000);
+      const Eigen::Vector3d a_millisecond = TinyEuroc::gyroAt(1'000'000) - TinyEuroc::gyroAt(0);
+      EXPECT_LT(late.norm(), a_millisecond.norm());
+    }
+}
+
 TEST_F(EurocRecordingTest, Mav0ItselfIsTheSame) {
   expectSameSteps(readAll(root_).steps, readAll(root_ + "/mav0").steps);
 }
