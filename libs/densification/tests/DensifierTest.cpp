@@ -80,7 +80,7 @@ TEST_F(DensifierTest, NoLineReachesBehindWhatItsImagesShow) {
     PointRecord& point = flight_.material.points[i];
     point.p_w *= 2;
     for (std::size_t k = 0; k < point.views.size(); ++k)
-      point.views[k].px = flight_.pixelOf(flight_.material.keyframes[k], point.p_w);
+      point.views[k].px = flight_.pixelOf(flight_.material.keyframes[k], point.p_w).cast<float>();
   }
   EXPECT_EQ(densify().lines, 1);
 }
@@ -121,7 +121,8 @@ TEST_F(DensifierTest, WhatViewsLeaveOpenIsLeftToParallelLines) {
   for (std::size_t k = 0; k < 16; ++k)
     flight_.material.keyframes[k].T_w_b.p = {0.1 * static_cast<double>(k), 0.004 * static_cast<double>(k % 3), 0};
   for (PointRecord& point : flight_.material.points)
-    for (PointView& view : point.views) view.px = flight_.pixelOf(flight_.material.keyframes[view.keyframe], point.p_w);
+    for (PointView& view : point.views)
+      view.px = flight_.pixelOf(flight_.material.keyframes[view.keyframe], point.p_w).cast<float>();
   flight_.show({{-0.2, 0.5, 5}, {0.8, 0.52, 5.02}});
   flight_.params.min_parallax_rad = 0;
   densify();

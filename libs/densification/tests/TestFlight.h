@@ -27,7 +27,8 @@ class TestFlight {
       PointRecord point;
       point.id = id, point.known = true;
       point.p_w = {between(-2, 2), between(-1.5, 1.5), between(4.5, 5.5)};
-      for (const RetiredKeyframe& k : material.keyframes) point.views.push_back({k.id, pixelOf(k, point.p_w), true});
+      for (const RetiredKeyframe& k : material.keyframes)
+        point.views.push_back({k.id, pixelOf(k, point.p_w).cast<float>(), true});
       material.points.push_back(point);
     }
   }
@@ -69,7 +70,8 @@ class TestFlight {
     line.id = id;
     for (std::size_t k = 0; k < views; ++k) {
       const EdgeSegment edge = edgeOf(material.keyframes[k], segment_w);
-      line.views.push_back({material.keyframes[k].id, id, edge.start_px, edge.end_px, 0.3f, true});
+      line.views.push_back(
+          {material.keyframes[k].id, id, edge.start_px.cast<float>(), edge.end_px.cast<float>(), 0.3f, true});
     }
     return line;
   }

@@ -102,7 +102,7 @@ void BatchProblem::addPoints() {
     for (const PointView* view : spreadViews(point.views, mostViewsOf(point))) {
       const PointView& v = *view;
       const auto k = static_cast<std::size_t>(keyframe_places_[v.keyframe]);
-      point_factors_.emplace_back(v.px, calibrated_.camera, motions_[k], origin_w,
+      point_factors_.emplace_back(v.px.cast<double>(), calibrated_.camera, motions_[k], origin_w,
                                   std::hypot(estimator_.factors.point_sigma_px, point.extra_sigma_px));
       addView(point_factors_.back(), point_loss_, k, at(points_at_ + i * kPointSize));
     }
@@ -118,7 +118,8 @@ void BatchProblem::addLines() {
     for (const LineView* view : spreadViews(line.views, most_views_)) {
       const LineView& v = *view;
       const auto k = static_cast<std::size_t>(keyframe_places_[v.keyframe]);
-      const auto [start, end] = makeLineEnds(calibrated_.camera, v.start_px, v.end_px, correction);
+      const auto [start, end] =
+          makeLineEnds(calibrated_.camera, v.start_px.cast<double>(), v.end_px.cast<double>(), correction);
       line_factors_.emplace_back(start, end, motions_[k], origin_w,
                                  estimator_.factors.line_sigma_px * std::max(0.1, static_cast<double>(v.sigma_px)));
       addView(line_factors_.back(), line_loss_, k, at(lines_at_ + i * kLineSize));

@@ -92,6 +92,7 @@ class BatchProblem {
   Carriage carriage(std::size_t k) const;
   void carryAlong();
   void settle();
+  void settleBetween(std::size_t from, std::size_t to);
   Eigen::Vector3d originOf(FrameId keyframe) const;
 
   std::size_t stretches() const { return stretches_.empty() ? 1 : stretches_.back() + 1; }

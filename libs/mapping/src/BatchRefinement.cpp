@@ -12,6 +12,7 @@
 #include "KeyframeClusters.h"
 #include "LineGroups.h"
 #include "MapFitting.h"
+#include "lintel/core/FreeMemory.h"
 #include "lintel/core/Quantiles.h"
 #include "lintel/estimator/StatePriors.h"
 #include "lintel/geometry/Rotation.h"
@@ -179,14 +180,16 @@ BatchRefinement::BatchRefinement(const Rig& calibrated, const EstimatorParams& e
 }
 
 RefinementReport BatchRefinement::refine(MapMaterial& material, const RefinementProgress& progress,
-                                         const std::vector<PointJoin>& joins) const {
+                                         const std::vector<PointJoin>& joins,
+                                         const std::function<void(MapMaterial&)>& place) const {
   RefinementReport report;
   MapMaterial refined = material;
+  if (place) place(refined);
   if (material.keyframes.size() < 3) {
     report.verdict = "not refined: fewer than three keyframes";
   } else {
     report = adjust(refined, progress, joins);
-    if (!report.accepted && !report.cancelled && !joins.empty()) {
+    if (!report.accepted && !report.cancelled && (place || !joins.empty())) {
       refined = material;
       refined.pieces = separatePieces(material);  // nothing holds them to one another
       report = adjust(refined, progress, {});
@@ -210,7 +213,23 @@ BatchRefinement::Used BatchRefinement::usedOf(const MapMaterial& material) const
     used.lines.push_back(params_.lines && l.known && keyframesOf(l) >= params_.min_views &&
                          l.estimate.sigmaDirection() <= params_.line_max_sigma_direction_rad &&
                          l.estimate.sigmaPosition(0) <= params_.line_max_relative_sigma * l.distance_m);
+  takeFewer(material, used);
   return used;
+}
+
+/// Where there are so many landmarks that each could have too few views, every n-th takes part, and the points that
+/// were seen again.
+void BatchRefinement::takeFewer(const MapMaterial& material, Used& used) const {
+  if (params_.most_residuals == 0) return;
+  const auto count = static_cast<std::size_t>(std::count(used.points.begin(), used.points.end(), true) +
+                                              std::count(used.lines.begin(), used.lines.end(), true));
+  const std::size_t n =
+      1 + count * static_cast<std::size_t>(params_.min_views) / static_cast<std::size_t>(params_.most_residuals);
+  std::size_t at = 0;
+  for (std::size_t i = 0; i < used.points.size(); ++i)
+    if (used.points[i] && material.points[i].extra_sigma_px == 0) used.points[i] = at++ % n == 0;
+  for (std::size_t i = 0; i < used.lines.size(); ++i)
+    if (used.lines[i]) used.lines[i] = at++ % n == 0;
 }
 
 /// The most views of a landmark that may have residuals, so that all together keep to `most_residuals`. Views of
@@ -265,6 +284,7 @@ RefinementReport BatchRefinement::adjust(MapMaterial& material, const Refinement
   report.verdict = "not refined: the run was cancelled";
   for (int round = 0; round < params_.rounds; ++round) {
     if (!goOn(round, 0)) return report;
+    returnFreeMemory();
     MapFitting fitting(map_, material);
     fitting.fitAll();
     // The causal poses drift: estimates of the same landmark coincide only after a first adjustment.
@@ -279,6 +299,7 @@ RefinementReport BatchRefinement::adjust(MapMaterial& material, const Refinement
     const Used used = usedOf(material);
     std::vector<ParallelLines> groups;
     if (round > 0 && params_.groups) groups = parallelLines(map_, material);
+    returnFreeMemory();
     const std::vector<Anchors> anchors =
         last ? fewAnchors(material.keyframes, params_.most_keyframes)
              : fewAnchors(material.keyframes, (params_.most_keyframes + 1) / 2, params_.keyframe_interval_s);
@@ -304,6 +325,7 @@ RefinementReport BatchRefinement::adjust(MapMaterial& material, const Refinement
     material.points.resize(separate);
     ++report.rounds;
   }
+  returnFreeMemory();
   double travelled_m = 0;
   measureChange(before, material, report, travelled_m);
   compareHeldOut(heldOutErrors(map_, before, held_out, params_.min_views),

@@ -2,6 +2,8 @@
 // BatchProblem: keyframes between the anchors.
 #include <ceres/solver.h>
 
+#include <algorithm>
+
 #include "BatchProblem.h"
 
 namespace lintel {
@@ -38,21 +40,30 @@ void BatchProblem::carryAlong() {
 }
 
 /// Estimates the keyframes between the anchors from their own views and the IMU to both sides. They hang together only
-/// from anchor to anchor, so that this costs little.
+/// from anchor to anchor, so that a long flight can be done piece by piece.
 void BatchProblem::settle() {
+  constexpr std::size_t kTogether = 100;
   if (carried_views_.empty()) return;
   carryAlong();
+  const std::size_t last = anchors_.size() - 1;
+  for (std::size_t from = 0, to = 0; from < last; from = to) {
+    to = std::min(from + kTogether, last);
+    while (to < last && !isAnchor(to)) ++to;
+    settleBetween(from, to);
+  }
+}
+
+/// `from` and `to` are anchors.
+void BatchProblem::settleBetween(std::size_t from, std::size_t to) {
   ceres::Problem problem(problemOptions());
   const auto hold = [&](double* block, int size) {
     problem.AddParameterBlock(block, size);
     problem.SetParameterBlockConstant(block);
   };
   hold(at(extrinsics_at_), kPoseSize);
-  for (std::size_t i = 0; i < stretches(); ++i) hold(at(correctionOf(i)), kCorrectionSize);
-  for (std::size_t i = 0; i < meanBiases(); ++i) hold(at(meanBiasOf(i)), kMeanBiasSize);
-  for (std::size_t i = 0; i < points_.size(); ++i) hold(at(points_at_ + i * kPointSize), kPointSize);
-  for (std::size_t i = 0; i < lines_.size(); ++i) hold(at(lines_at_ + i * kLineSize), kLineSize);
-  for (std::size_t k = 0; k < anchors_.size(); ++k) {
+  for (std::size_t k = from; k <= to; ++k) {
+    hold(at(correctionAt(k)), kCorrectionSize);
+    hold(at(meanBiasAt(k)), kMeanBiasSize);
     problem.AddParameterBlock(at(poseAt(k)), kPoseSize, poseManifold());
     problem.AddParameterBlock(at(motionAt(k)), kMotionSize);
     if (!isAnchor(k)) continue;
@@ -60,11 +71,15 @@ void BatchProblem::settle() {
     problem.SetParameterBlockConstant(at(motionAt(k)));
   }
   for (const auto& [k, factor] : imu_factors_)
-    problem.AddResidualBlock(factor.get(), nullptr, at(poseAt(k - 1)), at(motionAt(k - 1)), at(poseAt(k)),
-                             at(motionAt(k)), at(meanBiasAt(k - 1)));
-  for (const CarriedResidual& r : carried_views_)
+    if (k > from && k <= to)
+      problem.AddResidualBlock(factor.get(), nullptr, at(poseAt(k - 1)), at(motionAt(k - 1)), at(poseAt(k)),
+                               at(motionAt(k)), at(meanBiasAt(k - 1)));
+  for (const CarriedResidual& r : carried_views_) {
+    if (r.keyframe <= from || r.keyframe >= to) continue;
+    hold(r.landmark, r.landmark < at(lines_at_) ? kPointSize : kLineSize);
     problem.AddResidualBlock(r.factor, r.loss, at(poseAt(r.keyframe)), at(extrinsics_at_), at(correctionAt(r.keyframe)),
                              r.landmark);
+  }
   ceres::Solver::Options options;
   options.linear_solver_type = ceres::SPARSE_NORMAL_CHOLESKY;
   options.max_num_iterations = 4;

@@ -115,7 +115,7 @@ Eigen::Matrix4d covarianceByCameras(const KeyframeCameras& cameras, const std::v
     if (!v.inlier || !cameras.contains(v.keyframe)) continue;
     const Eigen::Matrix3d& R_c_w = cameras.R_c_w(v.keyframe);
     const Eigen::Vector3d arm = m - cameras.T_w_c(v.keyframe).p, l_w = arm.cross(d);
-    const Eigen::Vector3d ends[2] = {cameras.ray(v.start_px), cameras.ray(v.end_px)};
+    const Eigen::Vector3d ends[2] = {cameras.ray(v.start_px.cast<double>()), cameras.ray(v.end_px.cast<double>())};
     const double weight = cameras.camera().meanFocal() / std::max(0.1, static_cast<double>(v.sigma_px));
     const LineDistances distances(ends, R_c_w * l_w, weight, cameras.camera().wide());
     Eigen::Matrix<double, 3, 4> l_by_line;  // world axes

@@ -61,8 +61,10 @@ std::optional<std::pair<double, double>> seenStretch(const KeyframeCameras& came
     const std::optional<ViewStretch> seen = viewStretch(cameras, line.estimate, v);
     if (!seen) continue;
     const auto [start, end, start_m_per_px, end_m_per_px] = *seen;
-    all.push_back(start < end ? SeenPiece{start, end, open(v.start_px), open(v.end_px), start_m_per_px, end_m_per_px}
-                              : SeenPiece{end, start, open(v.end_px), open(v.start_px), end_m_per_px, start_m_per_px});
+    all.push_back(start < end ? SeenPiece{start, end, open(v.start_px.cast<double>()), open(v.end_px.cast<double>()),
+                                          start_m_per_px, end_m_per_px}
+                              : SeenPiece{end, start, open(v.end_px.cast<double>()), open(v.start_px.cast<double>()),
+                                          end_m_per_px, start_m_per_px});
     by_track[v.track].push_back(all.back());
   }
   std::optional<std::pair<double, double>> whole;

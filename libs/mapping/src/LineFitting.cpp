@@ -40,7 +40,7 @@ std::vector<LineFitView> fitViews(const KeyframeCameras& cameras, const LineReco
   for (const LineView* v : fitted)
     views.push_back({cameras.R_c_w(v->keyframe),
                      cameras.T_w_c(v->keyframe).p,
-                     {cameras.ray(v->start_px), cameras.ray(v->end_px)},
+                     {cameras.ray(v->start_px.cast<double>()), cameras.ray(v->end_px.cast<double>())},
                      cameras.camera().meanFocal() / std::max(0.1, static_cast<double>(v->sigma_px)),
                      cameras.camera().wide()});
   return views;

@@ -22,7 +22,7 @@ std::optional<ViewStretch> viewStretch(const KeyframeCameras& cameras, const Lin
   // Sines of the angle between ray and line: below, the point nearest to the ray is not known.
   constexpr double kLeastSine = 0.05, kMostSine = 0.5, kSigmas = 3, kLeastDepth_m = 0.05;
   const double least_sine = std::clamp(kSigmas * line.sigmaDirection(), kLeastSine, kMostSine);
-  const Eigen::Vector2d px[2] = {view.start_px, view.end_px};
+  const Eigen::Vector2d px[2] = {view.start_px.cast<double>(), view.end_px.cast<double>()};
   double places[2], m_per_px[2];
   for (int k = 0; k < 2; ++k) {
     const Eigen::Vector3d ray_w = (cameras.R_c_w(view.keyframe).transpose() * cameras.ray(px[k])).normalized();
@@ -40,8 +40,8 @@ double viewError(const KeyframeCameras& cameras, const LineEstimate& line, const
   const Eigen::Vector3d l = R_c_w * (line.middle_w - p_w_c).cross(line.direction_w);
   const double size = std::max(cameras.camera().wide() ? l.norm() : l.head<2>().norm(), 1e-12);
   double worst = 0;
-  for (const Eigen::Vector2d& px : {view.start_px, view.end_px}) {
-    const Eigen::Vector3d x = cameras.ray(px);
+  for (const Eigen::Vector2f& end_px : {view.start_px, view.end_px}) {
+    const Eigen::Vector3d x = cameras.ray(end_px.cast<double>());
     if (nearestToRay(line, p_w_c, (R_c_w.transpose() * x).normalized()).depth_m <= 0)
       return std::numeric_limits<double>::infinity();
     worst = std::max(worst, std::abs(x.dot(l)) / size * cameras.camera().meanFocal());

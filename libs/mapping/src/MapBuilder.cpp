@@ -17,7 +17,7 @@ PointRecord recordOf(const RetiredPoint& retired) {
   point.p_w = retired.p_w;
   point.sigma_distance_m = retired.sigma_distance_m;
   point.views.reserve(retired.sightings.size());
-  for (const PointSighting& s : retired.sightings) point.views.push_back({s.frame, s.px, true});
+  for (const PointSighting& s : retired.sightings) point.views.push_back({s.frame, s.px.cast<float>(), true});
   return point;
 }
 
@@ -32,7 +32,8 @@ LineRecord recordOf(const RetiredLine& retired) {
   }
   line.views.reserve(retired.sightings.size());
   for (const LineSighting& s : retired.sightings)
-    line.views.push_back({s.frame, retired.id, s.start_px, s.end_px, static_cast<float>(s.sigma_px), true});
+    line.views.push_back(
+        {s.frame, retired.id, s.start_px.cast<float>(), s.end_px.cast<float>(), static_cast<float>(s.sigma_px), true});
   return line;
 }
 
@@ -98,8 +99,10 @@ void MapBuilder::setCalibration(const Rig& rig, double time_offset_s) {
   material_.time_offset_s = time_offset_s;
 }
 
-MapMaterial MapBuilder::material() const {
-  MapMaterial material = material_;
+MapMaterial MapBuilder::material() const { return MapBuilder(*this).takeMaterial(); }
+
+MapMaterial MapBuilder::takeMaterial() {
+  MapMaterial material = std::move(material_);
   std::stable_sort(material.keyframes.begin(), material.keyframes.end(),
                    [](const RetiredKeyframe& a, const RetiredKeyframe& b) { return a.id < b.id; });
   std::set<FrameId> ids;

@@ -21,7 +21,7 @@ class MapDrawer {
   std::optional<MapPoint> draw(const PointRecord& point) const {
     MapPoint result;
     for (const PointView& v : point.views)
-      if (v.inlier) result.observations.push_back({v.keyframe, v.px});
+      if (v.inlier) result.observations.push_back({v.keyframe, v.px.cast<double>()});
     if (!point.known || static_cast<int>(result.observations.size()) < params_.min_observations) return std::nullopt;
     const double distance = (point.p_w - cameras_.T_w_c(result.observations.front().keyframe_id).p).norm();
     if (!(point.sigma_distance_m <= params_.point_max_relative_sigma * distance)) return std::nullopt;
@@ -73,9 +73,10 @@ class MapDrawer {
     const Eigen::Vector3d& p_w_c = cameras_.T_w_c(view.keyframe).p;
     const Eigen::Vector3d start_c = R_c_w * (segment_w.start - p_w_c), end_c = R_c_w * (segment_w.end - p_w_c);
     // a view and its line run the same way when their planes' normals agree
-    const Eigen::Vector3d seen = cameras_.ray(view.start_px).cross(cameras_.ray(view.end_px));
+    const Eigen::Vector2d start_px = view.start_px.cast<double>(), end_px = view.end_px.cast<double>();
+    const Eigen::Vector3d seen = cameras_.ray(start_px).cross(cameras_.ray(end_px));
     const bool turned = seen.dot(start_c.cross(end_c)) < 0;
-    return {view.keyframe, turned ? view.end_px : view.start_px, turned ? view.start_px : view.end_px};
+    return {view.keyframe, turned ? end_px : start_px, turned ? start_px : end_px};
   }
 
   std::int64_t timeOf(FrameId id) const { return material_.keyframes[cameras_.placeOf(id)].t_ns; }

@@ -23,7 +23,7 @@ MapMaterial materialOf(const MapParams& params, const LineMap& map) {
     record.id = record.track = point.id, record.known = true;
     record.p_w = point.p_w, record.sigma_distance_m = point.sigma_distance_m;
     for (const MapPointObservation& seen : point.observations)
-      record.views.push_back({seen.keyframe_id, seen.px, true});
+      record.views.push_back({seen.keyframe_id, seen.px.cast<float>(), true});
     material.points.push_back(std::move(record));
   }
   const KeyframeCameras cameras(material);
@@ -36,7 +36,8 @@ MapMaterial materialOf(const MapParams& params, const LineMap& map) {
     record.estimate.middle_w = line.segment_w.midpoint();
     record.estimate.direction_w = line.segment_w.direction();
     for (const MapLineObservation& seen : line.observations)
-      record.views.push_back({seen.keyframe_id, line.id, seen.start_px, seen.end_px, kViewSigma_px, true});
+      record.views.push_back(
+          {seen.keyframe_id, line.id, seen.start_px.cast<float>(), seen.end_px.cast<float>(), kViewSigma_px, true});
     if (line.constrained && line.group >= 0 && static_cast<std::size_t>(line.group) < map.groups.size()) {
       const MapGroup& group = map.groups[static_cast<std::size_t>(line.group)];
       record.tie = LineTie{group.direction_w, std::max(group.spread_rad, line.sigma_direction_rad), {}};

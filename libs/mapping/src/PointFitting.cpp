@@ -65,7 +65,7 @@ std::vector<PointFitView> fitViews(const KeyframeCameras& cameras, const PointRe
   std::vector<PointFitView> views;
   views.reserve(fitted.size());
   for (const PointView* v : fitted)
-    views.push_back({cameras.R_c_w(v->keyframe), cameras.T_w_c(v->keyframe).p, cameras.ray(v->px)});
+    views.push_back({cameras.R_c_w(v->keyframe), cameras.T_w_c(v->keyframe).p, cameras.ray(v->px.cast<double>())});
   return views;
 }
 
@@ -116,9 +116,9 @@ bool estimate(const Camera& camera, const std::vector<PointFitView>& views, cons
 
 double viewError(const KeyframeCameras& cameras, const Eigen::Vector3d& p_w, const PointView& view) {
   const Eigen::Vector3d p_c = cameras.R_c_w(view.keyframe) * (p_w - cameras.T_w_c(view.keyframe).p);
-  const double depth_m = cameras.camera().wide() ? p_c.dot(cameras.ray(view.px)) : p_c.z();
+  const double depth_m = cameras.camera().wide() ? p_c.dot(cameras.ray(view.px.cast<double>())) : p_c.z();
   if (depth_m < 0.05) return std::numeric_limits<double>::infinity();
-  return (cameras.camera().project(p_c) - view.px).norm();
+  return (cameras.camera().project(p_c) - view.px.cast<double>()).norm();
 }
 
 bool fitPoint(const KeyframeCameras& cameras, const PointFitParams& params, PointRecord& point) {

@@ -54,7 +54,11 @@ int joinPoints(const KeyframeCameras& cameras, const PointFitParams& fit, const 
   generous.max_error_px = most_px;
   generous.sigma_px = most_px / 3;
   const std::unordered_map<TrackId, std::size_t> places = placesOf(points);
-  std::vector<PointRecord> joint = points;
+  std::unordered_map<std::size_t, PointRecord> joint;  // by the place of the first
+  const auto pointAt = [&](std::size_t place) -> const PointRecord& {
+    const auto found = joint.find(place);
+    return found == joint.end() ? points[place] : found->second;
+  };
   MergedRecords records(points.size());
   int hold = 0;
   for (const PointJoin& join : byVotes(joins)) {
@@ -66,15 +70,16 @@ int joinPoints(const KeyframeCameras& cameras, const PointFitParams& fit, const 
       continue;
     }
     const double separate_px = std::max(points[a].error_px, points[b].error_px);
-    auto both = jointPoint(cameras, generous, joint[a], joint[b], separate_px, sigma_px);
+    auto both = jointPoint(cameras, generous, pointAt(a), pointAt(b), separate_px, sigma_px);
     if (!both) continue;
     joint[a] = std::move(*both);
+    joint.erase(b);
     records.join(a, b);
     ++hold;
   }
   const std::size_t separate = points.size();
   for (std::size_t i = 0; i < separate; ++i)
-    if (records.rootOf(i) == i && joint[i].extra_sigma_px > 0) points.push_back(std::move(joint[i]));
+    if (const auto found = joint.find(i); found != joint.end()) points.push_back(std::move(found->second));
   return hold;
 }
 

@@ -21,8 +21,9 @@ constexpr double kAgree = 2.5;       // standard deviations between points on on
 /// Distance of a pixel from a segment; infinity beyond its ends. Through a wide lens a segment is an arc of a great
 /// circle.
 double distanceFrom(const KeyframeCameras& cameras, const LineView& view, const Eigen::Vector2d& px) {
+  const Eigen::Vector2d start_px = view.start_px.cast<double>(), end_px = view.end_px.cast<double>();
   if (cameras.camera().wide()) {
-    const Eigen::Vector3d start = cameras.ray(view.start_px), end = cameras.ray(view.end_px), x = cameras.ray(px);
+    const Eigen::Vector3d start = cameras.ray(start_px), end = cameras.ray(end_px), x = cameras.ray(px);
     const Eigen::Vector3d normal = start.cross(end).normalized(), along = normal.cross(start);
     const double length = std::atan2(along.dot(end), start.dot(end)), place = std::atan2(along.dot(x), start.dot(x));
     const double reach = kBeyond_px / cameras.camera().meanFocal();
@@ -30,11 +31,11 @@ double distanceFrom(const KeyframeCameras& cameras, const LineView& view, const 
       return std::numeric_limits<double>::infinity();
     return std::abs(normal.dot(x)) * cameras.camera().meanFocal();
   }
-  const Eigen::Vector2d along = view.end_px - view.start_px;
-  const double length2 = along.squaredNorm(), u = (px - view.start_px).dot(along);
+  const Eigen::Vector2d along = end_px - start_px;
+  const double length2 = along.squaredNorm(), u = (px - start_px).dot(along);
   const double reach = kBeyond_px * std::sqrt(length2);
   if (!(u >= -reach && u <= length2 + reach) || length2 < 1) return std::numeric_limits<double>::infinity();
-  return std::abs((px - view.start_px).dot(Eigen::Vector2d(-along.y(), along.x()))) / std::sqrt(length2);
+  return std::abs((px - start_px).dot(Eigen::Vector2d(-along.y(), along.x()))) / std::sqrt(length2);
 }
 
 double distanceAcross(const PointOnLine& a, const PointOnLine& b, const Eigen::Vector3d& direction_w) {
@@ -50,7 +51,7 @@ PointsOnLines::PointsOnLines(const KeyframeCameras& cameras, const std::vector<P
     for (const PointView& v : points[i].views) {
       if (!v.inlier) continue;
       if (v.keyframe >= seen_.size()) seen_.resize(v.keyframe + 1);
-      seen_[v.keyframe].push_back({i, v.px});
+      seen_[v.keyframe].push_back({i, v.px.cast<double>()});
     }
   }
 }

@@ -120,7 +120,7 @@ class BatchRefinementTest : public testing::Test {
     params.max_imu_error = params.max_moved_m = 1000;
     for (PointRecord& point : material.points)
       if (point.id % 20 != 1)
-        for (PointView& view : point.views) view.px.x() += 0.6 * static_cast<double>(view.keyframe);
+        for (PointView& view : point.views) view.px.x() += 0.6F * static_cast<float>(view.keyframe);
   }
 
   /// From keyframe `first` on the images' stamps are late: they show the world of so much earlier. Points only.
@@ -133,8 +133,9 @@ class BatchRefinementTest : public testing::Test {
         const Pose &now = truth.state.T_w_b,
                    then{now.q * expRotation(-late_s * truth.state.omega_b), now.p - late_s * truth.state.v_w_b};
         const Eigen::Vector3d& p_w = flight_.points_w[flight_.point_of_track[point.track]];
-        view.px += rig_.camera.project((then * rig_.T_b_c).inverse() * p_w) -
-                   rig_.camera.project((now * rig_.T_b_c).inverse() * p_w);
+        view.px += (rig_.camera.project((then * rig_.T_b_c).inverse() * p_w) -
+                    rig_.camera.project((now * rig_.T_b_c).inverse() * p_w))
+                       .cast<float>();
       }
   }
 
@@ -175,6 +176,20 @@ TEST_F(BatchRefinementTest, ViewsOfAllLandmarksTogetherAreBounded) {
   EXPECT_LT(report.residuals, 2 * 600 + others);
   EXPECT_EQ(report.points, unbounded.points) << "none is left out";
   EXPECT_LT(error(material_), 0.3 * before);
+}
+
+/// With still more landmarks than views, some take no part.
+TEST_F(BatchRefinementTest, LandmarksAreBoundedWhereEachWouldHaveTooFewViews) {
+  params_.most_residuals = 600;
+  MapMaterial more = material_;
+  const RefinementReport all = refine(more);
+  params_.most_residuals = static_cast<int>(all.points + all.lines);
+  const double before = error(material_);
+  const RefinementReport report = refine(material_);
+  EXPECT_TRUE(report.accepted) << report.verdict;
+  EXPECT_LT(report.points + report.lines, (all.points + all.lines) / 2) << "every fourth";
+  EXPECT_GT(report.points + report.lines, (all.points + all.lines) / 6);
+  EXPECT_LT(error(material_), 0.5 * before);
 }
 
 TEST_F(BatchRefinementTest, IsRefusedWherePointsLeftOutFitWorse) {
@@ -327,7 +342,8 @@ TEST_F(BatchRefinementTest, EndsWhereMoreEffortWouldEnd) {
   RandomStream random(5);
   for (PointRecord& point : material_.points)
     for (PointView& view : point.views)
-      if (random.uniform(0, 1) < 0.05) view.px += Eigen::Vector2d(random.uniform(-6, 6), random.uniform(-6, 6));
+      if (random.uniform(0, 1) < 0.05)
+        view.px += Eigen::Vector2d(random.uniform(-6, 6), random.uniform(-6, 6)).cast<float>();
   MapMaterial thorough = material_;
   const RefinementReport report = refine(material_);
   ASSERT_TRUE(report.accepted) << report.verdict;
@@ -373,6 +389,19 @@ TEST_F(BatchRefinementTest, AChangeThatIsTooLargeIsNotUsed) {
   const RefinementReport report = refine(material_);
   EXPECT_FALSE(report.accepted);
   EXPECT_NE(report.verdict.find("moved"), std::string::npos) << report.verdict;
+}
+
+TEST_F(BatchRefinementTest, AfterAStartThatFailsItIsTriedFromWhereThePosesWere) {
+  MapMaterial elsewhere = material_, as_it_was = material_;
+  const auto tearApart = [](MapMaterial& start) {  // the adjustment cannot mend it
+    for (RetiredKeyframe& keyframe : start.keyframes) keyframe.T_w_b.p.x() += keyframe.id % 2 ? 1e6 : -1e6;
+  };
+  const BatchRefinement refinement(rig_, estimator_, map_, params_);
+  const RefinementReport report = refinement.refine(elsewhere, {}, {}, tearApart);
+  EXPECT_TRUE(report.accepted) << report.verdict;
+  EXPECT_TRUE(report.joins_refused);
+  EXPECT_FALSE(refinement.refine(as_it_was).joins_refused);
+  EXPECT_EQ(error(elsewhere), error(as_it_was));
 }
 
 TEST_F(BatchRefinementTest, WhereNothingWasSeenKeyframesMayMoveFarther) {

@@ -130,7 +130,7 @@ class AlignToGroups : public LineTyingTest {
  protected:
   LineRecord aligned(const Segment3& segment, const Eigen::Vector3d& direction_w) {
     LineRecord line = lineOf(material_, 1, segment);
-    for (LineView& view : line.views) view.end_px += Eigen::Vector2d(0.5, 0);
+    for (LineView& view : line.views) view.end_px += Eigen::Vector2f(0.5F, 0);
     EXPECT_TRUE(fitLine(cameras_, fit_, line));
     EXPECT_EQ(stateOf(line), LineState::kKnown);
     MapGroup group;

@@ -32,8 +32,8 @@ inline LineView viewOf(const MapMaterial& material, FrameId id, TrackId track, c
   LineView view;
   view.keyframe = id;
   view.track = track;
-  view.start_px = pixelOf(material, id, segment_w.start);
-  view.end_px = pixelOf(material, id, segment_w.end);
+  view.start_px = pixelOf(material, id, segment_w.start).cast<float>();
+  view.end_px = pixelOf(material, id, segment_w.end).cast<float>();
   return view;
 }
 
@@ -50,7 +50,7 @@ inline PointRecord pointOf(const MapMaterial& material, TrackId id, const Eigen:
                            FrameId last = 3) {
   PointRecord point;
   point.id = id;
-  for (FrameId k = first; k <= last; ++k) point.views.push_back({k, pixelOf(material, k, p_w), true});
+  for (FrameId k = first; k <= last; ++k) point.views.push_back({k, pixelOf(material, k, p_w).cast<float>(), true});
   return point;
 }
 

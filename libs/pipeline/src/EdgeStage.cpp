@@ -12,7 +12,8 @@ constexpr std::size_t kMostWaiting = 40;  // frames before a start: 2 s of 20 Hz
 void EdgeStage::search(const Frame& frame, StageClock& clock) {
   if (!edges_.empty() && frame.t_ns - edges_.rbegin()->first < interval_ns_) return;
   const StageClock::Scope scope(clock);
-  edges_.emplace(frame.t_ns, detector_.detect(*frame.image));
+  std::vector<EdgeSegment>& found = edges_[frame.t_ns] = detector_.detect(*frame.image);
+  found.shrink_to_fit();
 }
 
 void EdgeStage::add(const Frame& frame, const WindowUpdate& update, StageClock& clock) {

@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "EstimationStage.h"
 
+#include <algorithm>
 #include <cstdio>
 
+#include "lintel/core/FreeMemory.h"
 #include "lintel/mapping/LineSpacing.h"
 #include "lintel/mapping/MapStructure.h"
 #include "lintel/pipeline/RunCosts.h"
@@ -109,19 +111,19 @@ void EstimationStage::refineMap(MapMaterial& material, const FinishOptions& opti
   }
   const StageClock::Scope scope(result_.statistics.refinement);
   const PlaceReport& places = result_.loops.places;
-  alignPieces(places.alignments, material);
-  const bool spread = spreadDrift(sightingsOf(places, loops_.cameras()), material);
-  RefinementReport& report = result_.refinement;
-  report = refinement_.refine(material, options.refinement, joinsOf(result_.loops));
-  if (!report.cancelled && (spread || !places.alignments.empty()) && (!report.accepted || report.joins_refused)) {
-    material = map_.material();  // as it was before pieces and drift were moved
-    report = refinement_.refine(material, options.refinement);
-    report.joins_refused = true;
-  }
-  if (report.accepted) loops_.measureDrift(material, result_.loops);
+  const auto joinWhatWasSeenAgain = [&](MapMaterial& start) {
+    alignPieces(places.alignments, start);
+    spreadDrift(sightingsOf(places, loops_.cameras()), start);
+  };
+  const bool seen_again =
+      std::any_of(places.pairs.begin(), places.pairs.end(), [](const PlacePair& pair) { return pair.refusal.empty(); });
+  result_.refinement = refinement_.refine(material, options.refinement, joinsOf(result_.loops),
+                                          seen_again ? joinWhatWasSeenAgain : std::function<void(MapMaterial&)>());
+  if (result_.refinement.accepted) loops_.measureDrift(material, result_.loops);
 }
 
 void EstimationStage::densifyMap(MapMaterial& material, const FinishOptions& options) {
+  returnFreeMemory();
   const double before_ms = processTimeMs();  // it takes several threads
   result_.densification = densify(configuration_.densification, configuration_.map, edges_->edges(), material,
                                   options.threads, options.densification);
@@ -130,7 +132,7 @@ void EstimationStage::densifyMap(MapMaterial& material, const FinishOptions& opt
 }
 
 void EstimationStage::finishMap(const FinishOptions& options) {
-  MapMaterial material = map_.material();
+  MapMaterial material = map_.takeMaterial();
   const bool refine = configuration_.refinement.enabled && !material.keyframes.empty();
   if (refine && !result_.cancelled) {
     refineMap(material, options);

@@ -90,7 +90,20 @@ LoopResult LoopStage::find(const MapMaterial& material, const std::function<bool
   loops.places = findPlaces(material.rig.camera, frames_, knownPoints(material), params_, progress);
   for (const PlacePair& pair : loops.places.pairs)
     if (pair.refusal.empty() && !pair.joinsRuns()) loops.drift_before_m.push_back(pair.drift_m);
+  thinDescriptions();
   return loops;
+}
+
+/// Leaves descriptions at the distance that the map keeps, and the times of all.
+void LoopStage::thinDescriptions() {
+  const double interval_ns = 1e9 * params_.keep_interval_s - 1;
+  const PlaceView* kept = nullptr;
+  for (const std::unique_ptr<PlaceView>& view : views_) {
+    if (interval_ns > 0 && (!kept || static_cast<double>(view->t_ns - kept->t_ns) >= interval_ns))
+      kept = view.get();
+    else
+      view->features = {};
+  }
 }
 
 std::unordered_map<std::int64_t, Pose> LoopStage::cameras() const {
@@ -122,11 +135,10 @@ std::vector<MapView> LoopStage::takeViews(const LineMap& map, const MapMaterial&
     for (const TrackId track : point.joined) names.emplace(track, point.id);
   }
   std::vector<MapView> views;
-  const bool keep = searched_ && params_.keep_interval_s > 0 && !map.pieces.empty();
+  const bool keep = searched_ && !map.pieces.empty();
   for (std::size_t k = 0; keep && k < views_.size(); ++k) {
     PlaceView& looks = *views_[k];
-    if (!views.empty() && static_cast<double>(looks.t_ns - views.back().looks.t_ns) < 1e9 * params_.keep_interval_s - 1)
-      continue;
+    if (looks.features.empty()) continue;
     for (PlaceFeature& feature : looks.features) {
       const auto name = names.find(static_cast<TrackId>(feature.track));
       feature.track = name == names.end() ? PlaceFeature::kNoTrack : static_cast<std::int64_t>(name->second);

@@ -23,7 +23,7 @@ class LoopStage {
   /// Frames in the order of time; those without a pose in the window, at rest, or too soon after another are left out.
   void add(const Frame& frame, const std::vector<PointObservation>& tracked, const WindowUpdate& update);
 
-  /// The places; `progress` as for findPlaces().
+  /// The places; `progress` as for findPlaces(). Afterwards the stage has the descriptions that the map keeps.
   LoopResult find(const MapMaterial& material, const std::function<bool(double)>& progress);
 
   /// Where the odometry had the described frames.
@@ -32,13 +32,14 @@ class LoopStage {
   /// Compares what the images say of the accepted pairs of one piece with the refined trajectory.
   void measureDrift(const MapMaterial& refined, LoopResult& loops) const;
 
-  /// What the map keeps of the descriptions, for merging: some, with the tracks of its points. The stage has none left.
+  /// What the map keeps of the descriptions, for merging, with the tracks of its points. The stage has none left.
   std::vector<MapView> takeViews(const LineMap& map, const MapMaterial& material);
 
  private:
   bool isWanted(const WindowUpdate& update) const;
   void withdrawRun();
   void nameByPieces(const MapMaterial& material);
+  void thinDescriptions();
 
   Rig rig_;
   PlaceParams params_;

@@ -70,7 +70,7 @@ class LoopStageTest : public testing::Test {
         points[id].id = id;
         points[id].known = true;
         points[id].p_w = p_w + Eigen::Vector3d(drift, 0, 0);
-        points[id].views.push_back({static_cast<FrameId>(t_ns), px, true});
+        points[id].views.push_back({static_cast<FrameId>(t_ns), px.cast<float>(), true});
       }
       if (interrupted && i == 120) {
         WindowUpdate lost;

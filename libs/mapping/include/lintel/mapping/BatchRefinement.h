@@ -28,7 +28,7 @@ struct RefinementParams {
   double sigma_scale = 0.5;
   int min_views = 3;                           ///< keyframes that see a landmark of the adjustment
   int max_views = 40;                          ///< of a landmark that have residuals, spread over all it has; 0: all
-  int most_residuals = 300000;                 ///< views of all landmarks together; beyond it each has fewer; 0: all
+  int most_residuals = 200000;                 ///< views of all landmarks together; beyond it each has fewer; 0: all
   double line_max_sigma_direction_rad = 0.10;  ///< vaguer lines have no residuals
   double line_max_relative_sigma = 0.10;       ///< of their distance
   // points that were seen again, see joinPoints()
@@ -75,7 +75,7 @@ struct RefinementParams {
 /// What a refinement did, and whether it may be used.
 struct RefinementReport {
   bool accepted = false, cancelled = false;
-  bool joins_refused = false;  ///< the checks failed with points that were joined; this is the result without
+  bool joins_refused = false;  ///< the checks failed with joins and another start; this is the result without
   std::string verdict;         ///< in words: why, or why not
   int rounds = 0, iterations = 0, merged = 0;
   int joined = 0;  ///< of the points that were seen again, those that are one point in the last round
@@ -110,9 +110,11 @@ class BatchRefinement {
 
   /// Refines `material` (as MapBuilder::material() gives it): keyframes, calibration, landmarks, trajectory. When the
   /// checks fail, only its landmarks are estimated, with the poses as they were. `joins`: points that were probably
-  /// seen again; when the checks fail with them, it is tried without.
+  /// seen again; `place` moves keyframes, landmarks and trajectory to where the adjustment shall start. When the
+  /// checks fail with these, it is tried without.
   RefinementReport refine(MapMaterial& material, const RefinementProgress& progress = {},
-                          const std::vector<PointJoin>& joins = {}) const;
+                          const std::vector<PointJoin>& joins = {},
+                          const std::function<void(MapMaterial&)>& place = {}) const;
 
  private:
   /// Which landmarks take part in the adjustment.
@@ -120,6 +122,7 @@ class BatchRefinement {
     std::vector<bool> points, lines;
   };
   Used usedOf(const MapMaterial& material) const;
+  void takeFewer(const MapMaterial& material, Used& used) const;
   std::size_t viewsEach(const MapMaterial& material, const Used& used) const;
   std::vector<CameraErrors> errorsOf(MapMaterial& material) const;
   RefinementReport adjust(MapMaterial& material, const RefinementProgress& progress,

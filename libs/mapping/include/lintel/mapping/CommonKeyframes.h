@@ -31,11 +31,17 @@ struct SideBySide {
   int together = 0;  ///< nearer
 };
 
+/// Of a line's view, raw pixels.
+template <class View>
+Segment2 segmentInImage(const View& view) {
+  return {view.start_px.template cast<double>(), view.end_px.template cast<double>()};
+}
+
 template <class View, class Id>
 SideBySide sideBySide(const std::vector<View>& a, const std::vector<View>& b, Id View::*keyframe, double apart_px) {
   SideBySide count;
   anyInCommonKeyframes(a, b, keyframe, [&](const View& v, const View& w) {
-    const double px = separation({v.start_px, v.end_px}, {w.start_px, w.end_px});
+    const double px = separation(segmentInImage(v), segmentInImage(w));
     if (px >= 0) ++(px > apart_px ? count.apart : count.together);
     return false;
   });

@@ -14,18 +14,19 @@
 
 namespace lintel {
 
-/// Where a keyframe saw a point. Views keep only what cannot be computed again: an hour has millions of them.
+/// Where a keyframe saw a point. Views keep only what cannot be computed again, and that to 1e-4 px: an hour has
+/// millions of them.
 struct PointView {
   FrameId keyframe = 0;
-  Eigen::Vector2d px = Eigen::Vector2d::Zero();
-  bool inlier = true;  ///< agrees with the estimate
+  Eigen::Vector2f px = Eigen::Vector2f::Zero();  ///< raw (distorted) pixels
+  bool inlier = true;                            ///< agrees with the estimate
 };
 
 /// Where a keyframe saw a line.
 struct LineView {
   FrameId keyframe = 0;
   TrackId track = 0;  ///< that it belonged to: a merged line has several
-  Eigen::Vector2d start_px = Eigen::Vector2d::Zero(), end_px = Eigen::Vector2d::Zero();
+  Eigen::Vector2f start_px = Eigen::Vector2f::Zero(), end_px = Eigen::Vector2f::Zero();  ///< raw (distorted) pixels
   float sigma_px = 1;
   bool inlier = true;
 };
