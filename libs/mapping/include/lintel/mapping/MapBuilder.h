@@ -27,7 +27,7 @@ class MapBuilder {
   /// All that was added, ordered, nothing left out; frames that a start was made of have poses as well.
   MapMaterial material() const;
 
-  /// The same, once: the builder keeps nothing, what a long flight cannot spare twice.
+  /// The same without a copy: the builder is empty afterwards.
   MapMaterial takeMaterial();
 
   /// The map of everything added so far: prepareMaterial(), then drawMap().
