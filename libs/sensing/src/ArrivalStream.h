@@ -1,17 +1,21 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <deque>
-#include <exception>
 #include <memory>
 #include <optional>
+#include <string>
+#include <vector>
 
 #include "ArrivalTimes.h"
+#include "EvenTimes.h"
+#include "FrameTimes.h"
+#include "SampleGate.h"
 #include "SensorStream.h"
 
 namespace lintel {
 
-/// A stream whose IMU's samples have even times where they were stamped on arrival (ArrivalTimes); else as it is.
+/// A stream whose images and IMU samples have even times where they were stamped on arrival; else as it is, but for
+/// samples with the time of the one before.
 class ArrivalStream final : public SensorStream {
  public:
   explicit ArrivalStream(std::unique_ptr<SensorStream> stream) : stream_(std::move(stream)) {}
@@ -24,14 +28,10 @@ class ArrivalStream final : public SensorStream {
   std::optional<ImuSample> nextImu(std::int64_t needed_ns, const WarningSink& warn) override;
 
  private:
-  std::optional<ImuSample> read(std::int64_t needed_ns, const WarningSink& warn);
-  void endOrFault() const;
-  void look(std::int64_t needed_ns, const WarningSink& warn);
-
   std::unique_ptr<SensorStream> stream_;
-  std::deque<ImuSample> first_;  ///< that were looked at and not handed on
-  std::optional<ArrivalTimes> times_;
-  std::exception_ptr fault_;  ///< met ahead of what was asked for
+  EvenTimes<FrameRef, FrameTimes> frames_;
+  EvenTimes<ImuSample, ArrivalTimes> samples_;
+  StampGate gate_{"IMU sample", Fault::ImuStamp};
 };
 
 }  // namespace lintel

@@ -4,7 +4,8 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
-#include <limits>
+
+#include "StampLine.h"
 
 namespace lintel {
 
@@ -28,13 +29,11 @@ struct Intervals {
   double correlation = 0;   ///< of neighbours, without drop-outs
 };
 
-Intervals intervalsOf(const std::deque<ImuSample>& samples) {
+Intervals intervalsOf(const std::vector<std::int64_t>& stamps) {
   Intervals all;
-  const std::size_t n = samples.size() - 1;
-  all.mean_ns = static_cast<double>(samples.back().t_ns - samples.front().t_ns) / static_cast<double>(n);
-  const auto deviation = [&](std::size_t i) {
-    return static_cast<double>(samples[i + 1].t_ns - samples[i].t_ns) - all.mean_ns;
-  };
+  const std::size_t n = stamps.size() - 1;
+  all.mean_ns = static_cast<double>(stamps.back() - stamps.front()) / static_cast<double>(n);
+  const auto deviation = [&](std::size_t i) { return static_cast<double>(stamps[i + 1] - stamps[i]) - all.mean_ns; };
   const auto isDropOut = [&](std::size_t i) { return deviation(i) > (kDropOut - 1) * all.mean_ns; };
   double brief = 0, longer = 0, squares = 0, products = 0, single = 0, pairs = 0;
   for (std::size_t i = 0; i < n; ++i) {
@@ -55,9 +54,10 @@ Intervals intervalsOf(const std::deque<ImuSample>& samples) {
 
 }  // namespace
 
-ArrivalTimes::ArrivalTimes(const std::deque<ImuSample>& first) : last_ns_(std::numeric_limits<std::int64_t>::min()) {
+ArrivalTimes::ArrivalTimes(const std::vector<std::int64_t>& first) {
   if (first.size() < kLeastSamples) return;
   const Intervals intervals = intervalsOf(first);
+  if (intervals.mean_ns <= 0) return;  // all stamped together
   mean_ns_ = intervals.mean_ns;
   char text[200] = "";
   if (intervals.short_share > kShortShare) {
@@ -74,42 +74,34 @@ ArrivalTimes::ArrivalTimes(const std::deque<ImuSample>& first) : last_ns_(std::n
 
 /// Whether there is a drop-out before sample i.
 bool ArrivalTimes::startsAnew(std::size_t i) const {
-  return static_cast<double>(samples_[i].t_ns - samples_[i - 1].t_ns) > drop_out_ns_;
+  return static_cast<double>(stamps_[i] - stamps_[i - 1]) > drop_out_ns_;
 }
 
 /// A line by least squares; stamps count less the farther they are, so that where the window cuts a packet does not
 /// matter.
 std::int64_t ArrivalTimes::timeOf(std::size_t i) const {
-  const std::int64_t stamp_ns = samples_[i].t_ns;
-  double w_sum = 0, k_sum = 0, t_sum = 0, kk_sum = 0, kt_sum = 0;
+  StampLine line;
   const auto add = [&](std::size_t j) {
     const double k = static_cast<double>(j) - static_cast<double>(i);
-    const auto t_ns = static_cast<double>(samples_[j].t_ns - stamp_ns);
-    const double w = 1 - std::abs(k) * mean_ns_ / (kReach_ns + mean_ns_);
-    if (w <= 0) return false;
-    w_sum += w, k_sum += w * k, t_sum += w * t_ns, kk_sum += w * k * k, kt_sum += w * k * t_ns;
+    const double weight = 1 - std::abs(k) * mean_ns_ / (kReach_ns + mean_ns_);
+    if (weight <= 0) return false;
+    line.add(weight, k, static_cast<double>(stamps_[j] - stamps_[i]));
     return true;
   };
   add(i);
   for (std::size_t j = i; j > 0 && !startsAnew(j) && add(j - 1); --j) {
   }
-  for (std::size_t j = i + 1; j < samples_.size() && !startsAnew(j) && add(j); ++j) {
+  for (std::size_t j = i + 1; j < stamps_.size() && !startsAnew(j) && add(j); ++j) {
   }
-  const double determinant = w_sum * kk_sum - k_sum * k_sum;
-  const double slope_ns = determinant > 0 ? (w_sum * kt_sum - k_sum * t_sum) / determinant : 0;
-  return stamp_ns + std::llround((t_sum - slope_ns * k_sum) / w_sum);
+  return stamps_[i] + std::llround(line.at(0));
 }
 
-void ArrivalTimes::push(const ImuSample& sample) { samples_.push_back(sample); }
-
-std::optional<ImuSample> ArrivalTimes::pop(bool at_end) {
+std::optional<std::int64_t> ArrivalTimes::pop(bool at_end) {
   const auto reach = static_cast<std::size_t>(kReach_ns / mean_ns_) + 1;
-  if (next_ == samples_.size() || (!at_end && next_ + reach >= samples_.size())) return std::nullopt;
-  ImuSample sample = samples_[next_];
-  sample.t_ns = last_ns_ = std::max(timeOf(next_), last_ns_ + 1);
-  ++next_;
-  while (next_ > reach + 1) samples_.pop_front(), --next_;
-  return sample;
+  if (next_ == stamps_.size() || (!at_end && next_ + reach >= stamps_.size())) return std::nullopt;
+  const std::int64_t t_ns = timeOf(next_++);
+  while (next_ > reach + 1) stamps_.pop_front(), --next_;
+  return t_ns;
 }
 
 }  // namespace lintel

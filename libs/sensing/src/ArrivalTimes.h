@@ -6,8 +6,7 @@
 #include <deque>
 #include <optional>
 #include <string>
-
-#include "lintel/core/Frame.h"
+#include <vector>
 
 namespace lintel {
 
@@ -17,8 +16,16 @@ namespace lintel {
 /// number. What all are late by stays: it is part of the offset between the clocks.
 class ArrivalTimes {
  public:
-  /// Looks at the first samples, ascending in time.
-  explicit ArrivalTimes(const std::deque<ImuSample>& first);
+  static constexpr std::int64_t kLook_ns = 2'000'000'000;   ///< of samples, to see how they come
+  static constexpr std::int64_t kAhead_ns = 1'500'000'000;  ///< what pop() needs after one, and a packet
+
+  /// Looks at the first samples' stamps [ns], ascending.
+  explicit ArrivalTimes(const std::vector<std::int64_t>& first);
+
+  /// Whether `seen` are enough for the constructor.
+  static bool suffice(const std::vector<std::int64_t>& seen) {
+    return !seen.empty() && seen.back() - seen.front() >= kLook_ns;
+  }
 
   /// Whether the stamps are those of arrival. In packets intervals much shorter than the mean are frequent. Stamps that
   /// scatter by themselves about even times make a long interval follow a short one: the correlation of neighbours is
@@ -29,10 +36,10 @@ class ArrivalTimes {
   double rate_hz() const { return 1e9 / mean_ns_; }
 
   /// Ascending.
-  void push(const ImuSample& sample);
+  void push(std::int64_t t_ns) { stamps_.push_back(t_ns); }
 
   /// The next sample with its own time, once the stamps of the second after it are known or `at_end`.
-  std::optional<ImuSample> pop(bool at_end);
+  std::optional<std::int64_t> pop(bool at_end);
 
  private:
   bool startsAnew(std::size_t i) const;
@@ -40,9 +47,8 @@ class ArrivalTimes {
 
   std::string remark_;
   double mean_ns_ = 1, drop_out_ns_ = 1;
-  std::deque<ImuSample> samples_;  ///< the next one is at `next_`, before it those of a second
+  std::deque<std::int64_t> stamps_;  ///< the next one is at `next_`, before it those of a second
   std::size_t next_ = 0;
-  std::int64_t last_ns_ = 0;
 };
 
 }  // namespace lintel

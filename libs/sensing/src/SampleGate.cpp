@@ -25,8 +25,13 @@ bool StampGate::admit(std::int64_t t_ns, const std::function<std::string()>& whe
 
 bool ImuGate::admit(const ImuSample& sample, const std::function<std::string()>& where, const WarningSink& warn) {
   const bool finite = sample.gyro.allFinite() && sample.accel.allFinite();
-  if (finite && std::max(sample.gyro.cwiseAbs().maxCoeff(), sample.accel.cwiseAbs().maxCoeff()) < kBeyondAnySensor)
-    return stamps_.admit(sample.t_ns, where, warn);
+  if (finite && std::max(sample.gyro.cwiseAbs().maxCoeff(), sample.accel.cwiseAbs().maxCoeff()) < kBeyondAnySensor) {
+    const bool another =
+        last_ && sample.t_ns == last_->t_ns && (sample.gyro != last_->gyro || sample.accel != last_->accel);
+    const bool pass = another || stamps_.admit(sample.t_ns, where, warn);
+    if (pass) last_ = sample;
+    return pass;
+  }
   warn(Fault::ImuValue, where() + ": IMU sample at " + secondsText(sample.t_ns) +
                             (finite ? " is beyond what any sensor measures: skipped" : " is not finite: skipped"));
   return false;

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <functional>
 #include <limits>
+#include <optional>
 #include <string>
 
 #include "Warnings.h"
@@ -26,13 +27,15 @@ class StampGate {
   std::int64_t last_ns_ = std::numeric_limits<std::int64_t>::min();
 };
 
-/// StampGate that also drops samples with NaN or infinity.
+/// StampGate that also drops samples with NaN or infinity, and lets pass one with the time of the one before but other
+/// values: it was measured later, and they were stamped together when they arrived.
 class ImuGate {
  public:
   bool admit(const ImuSample& sample, const std::function<std::string()>& where, const WarningSink& warn);
 
  private:
   StampGate stamps_{"IMU sample", Fault::ImuStamp};
+  std::optional<ImuSample> last_;
 };
 
 }  // namespace lintel

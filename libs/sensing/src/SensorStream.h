@@ -43,8 +43,9 @@ class SensorStream {
   /// The next image, times strictly increasing; empty at the end. Throws RecordingError.
   virtual std::optional<FrameRef> nextFrame(const WarningSink& warn) = 0;
 
-  /// The next IMU sample, times strictly increasing, values finite. Empty when there is none that belongs to times up
-  /// to `needed_ns`: later calls with a later time may find one. Throws RecordingError.
+  /// The next IMU sample, times increasing, values finite; two have the same time only where a stream of a file hands
+  /// on samples that were stamped together on arrival (those of openStream() do not). Empty when there is none that
+  /// belongs to times up to `needed_ns`: later calls with a later time may find one. Throws RecordingError.
   virtual std::optional<ImuSample> nextImu(std::int64_t needed_ns, const WarningSink& warn) = 0;
 };
 

@@ -10,6 +10,12 @@
 
 namespace lintel {
 
+namespace {
+
+constexpr std::int64_t kLongestRepeat_ns = 1'000'000'000;
+
+}  // namespace
+
 FrameRange::FrameRange(const RecordingParams& params, std::int64_t first_ns)
     : from_ns(first_ns + std::llround(params.from_s * 1e9)),
       to_ns(params.to_s > 0 ? first_ns + std::llround(params.to_s * 1e9) : std::numeric_limits<std::int64_t>::max()) {}
@@ -46,6 +52,21 @@ std::shared_ptr<const GrayImage> StepProducer::decode(const FrameRef& ref) {
   }
 }
 
+/// Whether the image shows again, byte for byte, what the one before did: a driver or an encoder that had no new one. A
+/// camera at rest has noise; where there is none, images are delivered again after a second. One of a single grey (a
+/// lens that is covered) is none.
+bool StepProducer::isRepeat(const FrameRef& ref, const std::shared_ptr<const GrayImage>& image) {
+  const std::vector<std::uint8_t>& pixels = image->pixels;
+  const bool same =
+      shown_ && pixels == shown_->pixels &&
+      std::any_of(pixels.begin(), pixels.end(), [&](std::uint8_t grey) { return grey != pixels.front(); });
+  if (!same) shown_ns_ = ref.t_ns;
+  shown_ = image;
+  if (!same || ref.t_ns - shown_ns_ > kLongestRepeat_ns) return false;
+  warn(Fault::ImageRepeat, "image at " + secondsText(ref.t_ns) + " shows the one before again: frame skipped");
+  return true;
+}
+
 ImuBatch StepProducer::imuOf(std::int64_t t_ns) {
   ImuBatch batch = previous_ns_ ? imu_.between(*previous_ns_, t_ns) : imu_.before(t_ns);
   const auto bridged = std::find_if(batch.begin(), batch.end(), [](const ImuSample& s) { return s.bridged; });
@@ -67,7 +88,7 @@ Step StepProducer::next() {
   Step step;
   while (const std::optional<FrameRef> ref = nextInRange()) {
     std::shared_ptr<const GrayImage> image = decode(*ref);
-    if (!image) continue;
+    if (!image || isRepeat(*ref, image)) continue;
     step.frame = FrameWithImu{{ref->t_ns, std::move(image)}, imuOf(ref->t_ns), threadTimeMs() - start_ms};
     previous_ns_ = ref->t_ns;
     ++delivered_;

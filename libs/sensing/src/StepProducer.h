@@ -27,6 +27,7 @@ class StepProducer {
  private:
   std::optional<FrameRef> nextInRange();
   std::shared_ptr<const GrayImage> decode(const FrameRef& ref);
+  bool isRepeat(const FrameRef& ref, const std::shared_ptr<const GrayImage>& image);
   ImuBatch imuOf(std::int64_t t_ns);
   void checkEnd() const;
   void warn(Fault fault, std::string text) { warnings_.push_back({fault, std::move(text)}); }
@@ -38,6 +39,8 @@ class StepProducer {
   std::vector<Warning> warnings_;
   std::optional<FrameRange> range_;
   std::optional<std::int64_t> previous_ns_;
+  std::shared_ptr<const GrayImage> shown_;  ///< the last image, and since when it has been the same
+  std::int64_t shown_ns_ = 0;
   std::int64_t last_seen_ns_ = 0;
   std::size_t delivered_ = 0, with_imu_ = 0, unreadable_ = 0;
   std::string first_unreadable_;

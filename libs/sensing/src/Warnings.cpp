@@ -10,6 +10,8 @@ const char* nameOf(Fault fault) {
   switch (fault) {
     case Fault::Image:
       return "unreadable images";
+    case Fault::ImageRepeat:
+      return "images shown again";
     case Fault::ImageStamp:
       return "image time stamps out of order";
     case Fault::ImuStamp:

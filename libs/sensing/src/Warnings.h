@@ -10,7 +10,18 @@
 namespace lintel {
 
 /// Small faults that are skipped and noted.
-enum class Fault { Image, ImageStamp, ImuStamp, ImuValue, CutLine, ImuGap, ImuBridged, Calibration, Other };
+enum class Fault {
+  Image,
+  ImageRepeat,
+  ImageStamp,
+  ImuStamp,
+  ImuValue,
+  CutLine,
+  ImuGap,
+  ImuBridged,
+  Calibration,
+  Other
+};
 
 struct Warning {
   Fault fault = Fault::Other;

@@ -154,6 +154,15 @@ TEST_F(EurocFaultsTest, DuplicatedAndReorderedSamplesAreSkipped) {
                           HasSubstr("same time as the one before"), HasSubstr("older than the one before")));
 }
 
+TEST_F(EurocFaultsTest, TwoSamplesAtOneTimeAreOne) {
+  const std::vector<FrameWithImu> whole = readAll(root_).steps;
+  const std::string line = imuLine(0.5);
+  replaceInFile(imu_ + "/data.csv", line, line + line.substr(0, line.find(',')) + ",0,0,0,0,0,9.8\n");
+  const Everything all = readAll(root_);
+  expectSameSteps(all.steps, whole);
+  EXPECT_THAT(all.warnings, ElementsAre(HasSubstr("same time as the one before: skipped")));
+}
+
 TEST_F(EurocFaultsTest, NonFiniteSamplesAreSkipped) {
   const std::string line = imuLine(0.5);
   replaceInFile(imu_ + "/data.csv", line, line.substr(0, line.find(',')) + ",nan,0,0,0,inf,0\n");

@@ -1,6 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <gmock/gmock.h>
 
+#include <cmath>
+#include <random>
+#include <sstream>
+
 #include <opencv2/imgcodecs.hpp>
 
 #include "TimeTicks.h"
@@ -128,6 +132,56 @@ TEST_F(EurocRecordingTest, SamplesThatCameInPacketsHaveTimesOfTheirOwn) {
       const Eigen::Vector3d a_millisecond = TinyEuroc::gyroAt(1'000'000) - TinyEuroc::gyroAt(0);
       EXPECT_LT(late.norm(), a_millisecond.norm());
     }
+}
+
+TEST_F(EurocRecordingTest, ImagesThatWereStampedOnArrivalHaveTimesOfTheirOwn) {
+  TinyEuroc longer;
+  longer.frames = 100;
+  longer.write(root_);
+  const std::string table = camera_ + "/data.csv";
+  const std::vector<FrameWithImu> whole = readAll(root_).steps;
+  std::istringstream lines(bytesOf(table));
+  std::string header, line, text;
+  std::getline(lines, header);
+  std::mt19937 random(4);
+  std::exponential_distribution<double> late_ms(0.2);
+  while (std::getline(lines, line)) {
+    const std::int64_t t_ns = std::stoll(line) + std::llround(1e6 * late_ms(random));
+    text += std::to_string(t_ns) + line.substr(line.find(',')) + "\n";
+  }
+  writeText(table, header + "\n" + text);
+  const Everything all = readAll(root_);
+  EXPECT_THAT(all.warnings, ElementsAre(HasSubstr("the stamps of images scatter by")));
+  ASSERT_EQ(all.steps.size(), 100U);
+  for (std::size_t i = 20; i < 80; ++i)
+    EXPECT_NEAR(1e-6 * static_cast<double>(all.steps[i].frame.t_ns - whole[i].frame.t_ns), 3.5, 2.5);
+}
+
+TEST_F(EurocRecordingTest, AnImageThatShowsTheOneBeforeAgainIsSkipped) {
+  namespace fs = std::filesystem;
+  const auto repeat = [&](int to) {
+    fs::copy_file(imagePath(to - 1), imagePath(to), fs::copy_options::overwrite_existing);
+  };
+  repeat(7);
+  repeat(12);
+  repeat(13);
+  const Everything all = readAll(root_);
+  EXPECT_EQ(all.error, "");
+  EXPECT_EQ(all.steps.size(), 17U);
+  EXPECT_THAT(all.warnings,
+              ElementsAre(HasSubstr("shows the one before again"), HasSubstr("shows the one before again"),
+                          HasSubstr("shows the one before again")));
+  for (std::size_t i = 1; i < all.steps.size(); ++i)
+    EXPECT_EQ(all.steps[i].imu.front().t_ns, all.steps[i - 1].frame.t_ns) << "the IMU has no gap";
+}
+
+TEST_F(EurocRecordingTest, ACameraWithoutNoiseThatDoesNotMoveIsNotSkippedForLong) {
+  TinyEuroc longer;
+  longer.frames = 60;
+  longer.write(root_);
+  for (int i = 11; i < 60; ++i)
+    std::filesystem::copy_file(imagePath(10), imagePath(i), std::filesystem::copy_options::overwrite_existing);
+  EXPECT_EQ(readAll(root_).steps.size(), 40U);
 }
 
 TEST_F(EurocRecordingTest, Mav0ItselfIsTheSame) {
