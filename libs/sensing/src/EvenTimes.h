@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <cstdio>
 #include <deque>
-#include <exception>
 #include <functional>
 #include <limits>
 #include <optional>
@@ -12,8 +11,8 @@
 #include <utility>
 #include <vector>
 
+#include "ReadAhead.h"
 #include "TimeTicks.h"
-#include "lintel/sensing/Recording.h"
 
 namespace lintel {
 
@@ -22,7 +21,7 @@ namespace lintel {
 template <typename Item, typename Times>
 class EvenTimes {
  public:
-  using Read = std::function<std::optional<Item>(std::int64_t ahead_ns)>;
+  using Read = typename ReadAhead<Item>::Read;
   using Say = std::function<void(std::string)>;
 
   /// The next item; empty when `read` gives none, which is asked for items up to `ahead_ns` after it. `say` is told
@@ -36,7 +35,7 @@ class EvenTimes {
   void lookAtFirst(const Read& read, const Say& say) {
     std::vector<std::int64_t> stamps;
     while (!Times::suffice(stamps)) {
-      std::optional<Item> item = readAhead(read, Times::kLook_ns);
+      std::optional<Item> item = ahead_.next(read, Times::kLook_ns);
       if (!item) break;
       stamps.push_back(item->t_ns);
       waiting_.push_back(std::move(*item));
@@ -49,34 +48,25 @@ class EvenTimes {
     for (const std::int64_t t_ns : stamps) times_->push(t_ns);
   }
 
-  /// Items are read ahead of those that are asked for: a fault there must not take these.
-  std::optional<Item> readAhead(const Read& read, std::int64_t ahead_ns) {
-    if (fault_) return std::nullopt;
-    try {
-      return read(ahead_ns);
-    } catch (const RecordingError&) {
-      fault_ = std::current_exception();
-      return std::nullopt;
-    }
-  }
-
   std::optional<Item> nextAsItIs(const Read& read) {
     if (!waiting_.empty()) return take();
-    if (fault_) std::rethrow_exception(fault_);
+    ahead_.endOrFault();
     return read(0);
   }
 
   std::optional<Item> nextEven(const Read& read) {
     std::optional<std::int64_t> t_ns;
     while (!(t_ns = times_->pop(false))) {
-      std::optional<Item> item = readAhead(read, Times::kAhead_ns);
+      std::optional<Item> item = ahead_.next(read, Times::kAhead_ns);
       if (!item) break;
       times_->push(item->t_ns);
       waiting_.push_back(std::move(*item));
     }
     if (!t_ns) t_ns = times_->pop(true);
-    if (!t_ns && fault_) std::rethrow_exception(fault_);
-    if (!t_ns) return std::nullopt;
+    if (!t_ns) {
+      ahead_.endOrFault();
+      return std::nullopt;
+    }
     std::optional<Item> item = take();
     item->t_ns = last_ns_ = std::max(cutToTick(*t_ns), last_ns_ + kTick_ns);
     return item;
@@ -88,10 +78,10 @@ class EvenTimes {
     return item;
   }
 
+  ReadAhead<Item> ahead_;
   std::optional<Times> times_;
   std::deque<Item> waiting_;  ///< read and not delivered
   std::int64_t last_ns_ = std::numeric_limits<std::int64_t>::min() / 2;
-  std::exception_ptr fault_;  ///< met ahead of what was asked for
 };
 
 }  // namespace lintel

@@ -6,6 +6,7 @@
 #include "BagStream.h"
 #include "EurocFolder.h"
 #include "EurocStream.h"
+#include "ImuValuesStream.h"
 #include "PlainStream.h"
 #include "RawlogStream.h"
 #include "ShiftedStream.h"
@@ -55,6 +56,7 @@ std::unique_ptr<SensorStream> openStream(const std::string& path, const Recordin
   const RecordingParams params = withPublishedCalibration(path, own_params);
   const GivenCalibration given(params);
   std::unique_ptr<SensorStream> stream = std::make_unique<ArrivalStream>(openUnshifted(path, params, given));
+  stream = std::make_unique<ImuValuesStream>(std::move(stream));
   if (given.shift_ns() == 0) return stream;
   return std::make_unique<ShiftedStream>(std::move(stream), given.shift_ns());
 }

@@ -18,6 +18,8 @@ const char* nameOf(Fault fault) {
       return "IMU time stamps out of order";
     case Fault::ImuValue:
       return "IMU samples that are not finite";
+    case Fault::ImuSpike:
+      return "spikes of the IMU";
     case Fault::CutLine:
       return "incomplete lines";
     case Fault::ImuGap:

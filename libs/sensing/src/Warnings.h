@@ -16,6 +16,7 @@ enum class Fault {
   ImageStamp,
   ImuStamp,
   ImuValue,
+  ImuSpike,
   CutLine,
   ImuGap,
   ImuBridged,

@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "ImuValuesStream.h"
+
+#include "TimeTicks.h"
+
+namespace lintel {
+
+/// From one to the next.
+void ImuValuesStream::handOn(bool at_end, const WarningSink& warn) {
+  while (const std::optional<ImuSample> sample = held_.pop(at_end)) spikes_.push(*sample);
+  if (said_ || !held_.hasLooked()) return;
+  said_ = true;
+  if (!held_.remark().empty()) warn(Fault::Other, path() + ": " + held_.remark() + ": interpolated");
+}
+
+std::optional<ImuSample> ImuValuesStream::pop(bool at_end, const WarningSink& warn) {
+  std::string remark;
+  const std::optional<ImuSample> sample = spikes_.pop(at_end, remark);
+  if (!remark.empty())
+    warn(Fault::ImuSpike, path() + ": IMU sample at " + secondsText(sample->t_ns) + ": " + remark + ": replaced");
+  return sample;
+}
+
+std::optional<ImuSample> ImuValuesStream::nextImu(std::int64_t needed_ns, const WarningSink& warn) {
+  const auto read = [&](std::int64_t ahead_ns) { return stream_->nextImu(needed_ns + ahead_ns, warn); };
+  while (true) {
+    if (const std::optional<ImuSample> sample = pop(false, warn)) return sample;
+    const std::optional<ImuSample> next = ahead_.next(read, held_.hasLooked() ? 0 : HeldValues::kLook_ns);
+    if (next) held_.push(*next);
+    handOn(!next, warn);
+    if (next) continue;
+    const std::optional<ImuSample> last = pop(true, warn);
+    if (!last) ahead_.endOrFault();
+    return last;
+  }
+}
+
+}  // namespace lintel

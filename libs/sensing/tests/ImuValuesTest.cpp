@@ -1,0 +1,173 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <random>
+#include <string>
+#include <vector>
+
+#include "HeldValues.h"
+#include "SpikeFilter.h"
+
+namespace lintel {
+namespace {
+
+using Samples = std::vector<ImuSample>;
+
+constexpr std::int64_t kPeriod_ns = 5'000'000;
+
+Eigen::Vector3d accelAt(double t_s) { return {std::sin(6 * t_s), 2 * std::cos(5 * t_s), 9.81 + std::sin(4 * t_s)}; }
+Eigen::Vector3d gyroAt(double t_s) { return {0.3 * std::sin(3 * t_s), 0.2, -0.5 * std::cos(2 * t_s)}; }
+
+double seconds(const ImuSample& sample) { return 1e-9 * static_cast<double>(sample.t_ns); }
+
+/// 200 samples a second.
+Samples motion(std::size_t n, double noise = 0) {
+  std::mt19937_64 random(1);
+  std::normal_distribution<double> normal(0, 1);
+  const auto any = [&] { return Eigen::Vector3d(normal(random), normal(random), normal(random)); };
+  Samples samples(n);
+  for (std::size_t i = 0; i < n; ++i) {
+    samples[i].t_ns = static_cast<std::int64_t>(i) * kPeriod_ns;
+    samples[i].gyro = gyroAt(seconds(samples[i])) + 0.1 * noise * any();
+    samples[i].accel = accelAt(seconds(samples[i])) + noise * any();
+  }
+  return samples;
+}
+
+/// The accelerations are those of a sensor that measures every `interval_s`.
+Samples held(std::size_t n, double interval_s) {
+  Samples samples = motion(n);
+  for (ImuSample& sample : samples) {
+    const double measured_s = interval_s * std::floor(seconds(sample) / interval_s + 1e-9);
+    sample.accel = accelAt(measured_s) + Eigen::Vector3d::Constant(1e-6 * measured_s);
+  }
+  return samples;
+}
+
+Samples through(HeldValues& values, const Samples& samples) {
+  Samples out;
+  for (const ImuSample& sample : samples) {
+    values.push(sample);
+    while (const auto next = values.pop(false)) out.push_back(*next);
+  }
+  while (const auto next = values.pop(true)) out.push_back(*next);
+  return out;
+}
+
+TEST(HeldValues, ValuesOfASlowSensorAreInterpolated) {
+  for (const double interval_s : {0.008, 0.01, 0.016, 0.1 / 3}) {
+    HeldValues values;
+    const Samples in = held(1000, interval_s), out = through(values, in);
+    EXPECT_NE(values.remark().find("accelerations are each repeated"), std::string::npos) << interval_s;
+    EXPECT_EQ(values.remark().find("angular"), std::string::npos);
+    ASSERT_EQ(out.size(), in.size());
+    double before = 0, after = 0;
+    for (std::size_t i = 20; i < 980; ++i) {
+      EXPECT_EQ(out[i].t_ns, in[i].t_ns);
+      EXPECT_EQ(out[i].gyro, in[i].gyro);
+      before += (in[i].accel - accelAt(seconds(in[i]))).squaredNorm();
+      after += (out[i].accel - accelAt(seconds(in[i]))).squaredNorm();
+    }
+    EXPECT_LT(std::sqrt(after / before), interval_s < 0.012 ? 0.75 : 0.45) << interval_s;
+  }
+}
+
+TEST(HeldValues, SamplesThatAreRepeatedWholeAreInterpolated) {
+  Samples in = motion(1000);
+  for (std::size_t i = 1; i < in.size(); i += 2) in[i].gyro = in[i - 1].gyro, in[i].accel = in[i - 1].accel;
+  HeldValues values;
+  const Samples out = through(values, in);
+  EXPECT_NE(values.remark().find("angular rates are each repeated in 2.0 samples; "), std::string::npos)
+      << values.remark();
+  ASSERT_EQ(out.size(), 1000U);
+  for (std::size_t i = 10; i < 990; ++i) {
+    EXPECT_NE(out[i].gyro, out[i - 1].gyro);
+    EXPECT_NE(out[i].accel, out[i - 1].accel);
+  }
+}
+
+TEST(HeldValues, ASensorThatStopsKeepsItsLastValue) {
+  Samples in = held(1000, 0.016);
+  for (std::size_t i = 600; i < 800; ++i) in[i].accel = in[599].accel;
+  HeldValues values;
+  const Samples out = through(values, in);
+  for (std::size_t i = 600; i < 780; ++i) EXPECT_EQ(out[i].accel, in[599].accel);
+}
+
+TEST(HeldValues, OtherSamplesAreAsTheyCame) {
+  Samples still = motion(1000);  // at rest, with steps of the sensor that are larger than its noise
+  std::mt19937_64 random(4);
+  std::normal_distribution<double> normal(0, 1);
+  for (ImuSample& sample : still) {
+    sample.accel = {0, 0, 9.8 + 0.02 * std::round(0.6 * normal(random))};
+    sample.gyro = {0.01 * std::round(0.4 * normal(random)), 0, 0};
+  }
+  for (const Samples& in : {motion(1000), motion(1000, 0.1), still, Samples(1000), motion(5)}) {
+    HeldValues values;
+    const Samples out = through(values, in);
+    EXPECT_EQ(values.remark(), "");
+    ASSERT_EQ(out.size(), in.size());
+    for (std::size_t i = 0; i < in.size(); ++i) EXPECT_TRUE(out[i].accel == in[i].accel && out[i].gyro == in[i].gyro);
+  }
+}
+
+Samples withoutSpikes(const Samples& samples, int* found) {
+  SpikeFilter filter;
+  Samples out;
+  std::string remark;
+  *found = 0;
+  const auto take = [&](bool at_end) {
+    while (const auto next = filter.pop(at_end, remark)) out.push_back(*next), *found += !remark.empty();
+  };
+  for (const ImuSample& sample : samples) {
+    filter.push(sample);
+    take(false);
+  }
+  take(true);
+  return out;
+}
+
+TEST(SpikeFilter, SingleValuesThatStandOutAreReplaced) {
+  Samples in = motion(1000, 0.2);
+  in[100].accel.y() = 30;
+  in[105].accel.y() = -30;
+  in[300].gyro.z() += 2;
+  in[500].gyro.setZero();
+  in[500].accel.setZero();  // a sample that was not read
+  int found = 0;
+  const Samples out = withoutSpikes(in, &found);
+  ASSERT_EQ(out.size(), in.size());
+  EXPECT_EQ(found, 4);
+  for (const std::size_t i : {100, 105, 300, 500}) {
+    EXPECT_EQ(out[i].t_ns, in[i].t_ns);
+    EXPECT_LT((out[i].accel - accelAt(seconds(in[i]))).norm(), 1) << i;
+    EXPECT_LT((out[i].gyro - gyroAt(seconds(in[i]))).norm(), 0.4);
+  }
+  for (std::size_t i = 0; i < in.size(); ++i)
+    EXPECT_EQ(out[i].accel == in[i].accel && out[i].gyro == in[i].gyro, i != 100 && i != 105 && i != 300 && i != 500)
+        << i;
+}
+
+TEST(SpikeFilter, WhatABodyDoesIsLeft) {
+  Samples shaken = motion(1000, 3), motor = motion(1000), knock = motion(1000, 0.05), change = motion(1000, 0.05);
+  for (std::size_t i = 0; i < 1000; ++i) {
+    const double phase = 2 * M_PI * 91.7 * seconds(motor[i]);
+    motor[i].accel += Eigen::Vector3d(15 * std::sin(phase), 10 * std::cos(phase), 20 * std::sin(2 * phase));
+    motor[i].gyro += 0.5 * Eigen::Vector3d(std::cos(phase), std::sin(phase), 0);
+  }
+  for (std::size_t i = 0; i < 6; ++i)
+    knock[400 + i].accel.z() += 25 * std::pow(std::sin(M_PI * (static_cast<double>(i) + 0.5) / 6), 2);
+  for (std::size_t i = 500; i < 1000; ++i)
+    change[i].accel.x() += 15, change[i].t_ns += 400'000'000;  // after a drop-out
+  const std::pair<const char*, const Samples&> motions[] = {
+      {"shaken", shaken}, {"motor", motor}, {"knock", knock}, {"after a drop-out", change}};
+  for (const auto& [name, in] : motions) {
+    int found = 0;
+    withoutSpikes(in, &found);
+    EXPECT_EQ(found, 0) << name;
+  }
+}
+
+}  // namespace
+}  // namespace lintel
