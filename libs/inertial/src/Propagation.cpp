@@ -68,14 +68,32 @@ StateCovariance propagatedCovariance(const InertialState& from, const Preintegra
   return result;
 }
 
-double squaredMisfit(const InertialState& from, const InertialState& to, const Preintegration& imu) {
+namespace {
+
+/// Of the later state, in the earlier body, in the order of Preintegration.
+Eigen::Matrix<double, 9, 1> misfit(const InertialState& from, const InertialState& to, const Preintegration& imu) {
   const InertialState expected = propagated(from, imu);
-  const Eigen::Quaterniond R_b_w = from.T_w_b.q.conjugate();  // of the earlier body
+  const Eigen::Quaterniond R_b_w = from.T_w_b.q.conjugate();
   Eigen::Matrix<double, 9, 1> r;
   r.segment<3>(Preintegration::kTheta) = logRotation(expected.T_w_b.q.conjugate() * to.T_w_b.q);
   r.segment<3>(Preintegration::kVelocity) = R_b_w * (to.v_w_b - expected.v_w_b);
   r.segment<3>(Preintegration::kPosition) = R_b_w * (to.T_w_b.p - expected.T_w_b.p);
+  return r;
+}
+
+}  // namespace
+
+double squaredMisfit(const InertialState& from, const InertialState& to, const Preintegration& imu) {
+  const Eigen::Matrix<double, 9, 1> r = misfit(from, to, imu);
   return r.dot(imu.covariance().llt().solve(r));
+}
+
+double squaredAccelMisfit(const InertialState& from, const InertialState& to, const Preintegration& imu) {
+  static_assert(Preintegration::kPosition == Preintegration::kVelocity + 3);
+  const Eigen::Matrix<double, 6, 1> r = misfit(from, to, imu).segment<6>(Preintegration::kVelocity);
+  const Eigen::Matrix<double, 6, 6> covariance =
+      imu.covariance().block<6, 6>(Preintegration::kVelocity, Preintegration::kVelocity);
+  return r.dot(covariance.llt().solve(r));
 }
 
 }  // namespace lintel

@@ -82,6 +82,12 @@ TEST(Propagation, MisfitIsMeasuredByTheCovariance) {
   off = there;
   off.T_w_b.q = off.T_w_b.q * expRotation({0, 0, 3 * 1.6968e-4});  // about the vertical: it turns no acceleration
   EXPECT_NEAR(squaredMisfit(from, off, imu), 9, 0.1);
+  EXPECT_NEAR(squaredAccelMisfit(from, off, imu), 0, 1e-9) << "the rotation does not count";
+  off = there;
+  off.v_w_b.y() += sigma;
+  off.T_w_b.p.y() += 0.5 * sigma;
+  EXPECT_LT(squaredAccelMisfit(from, off, imu), expected) << "a tilt that nothing else contradicts explains a part";
+  EXPECT_GT(squaredAccelMisfit(from, off, imu), 0.2 * expected);
 }
 
 /// What `to` differs from `from` by, in the order of StateCovariance.

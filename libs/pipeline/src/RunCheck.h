@@ -57,6 +57,7 @@ class RunCheck {
   std::string symptom(const OdometryStatistics& statistics, const Rig& estimated) const;
   /// Where the residuals of the IMU are too large for its noise; empty: nowhere.
   std::string imuFault() const;
+  std::string accelFault() const;
   std::string cause(const OdometryStatistics& s) const;  ///< what may be behind it; empty: unknown
 
   Rig rig_;
@@ -67,6 +68,7 @@ class RunCheck {
   ImageCheck images_;
   std::optional<InertialState> keyframe_;  ///< the last one that has left the window
   std::vector<double> imu_misfits_;        ///< squared, of nine degrees of freedom, between keyframes
+  std::vector<double> accel_misfits_;      ///< of six, without the rotation
   std::vector<double> biases_gyro_, biases_accel_;
   Eigen::Vector3d bias_gyro_;
   std::string divergence_;           ///< the first; empty: none

@@ -39,4 +39,7 @@ StateCovariance propagatedCovariance(const InertialState& from, const Preintegra
 /// of the interval: a chi-square with nine degrees of freedom where both states are right.
 double squaredMisfit(const InertialState& from, const InertialState& to, const Preintegration& imu);
 
+/// The same of velocity and position alone, which the accelerometer is asked for: six degrees of freedom.
+double squaredAccelMisfit(const InertialState& from, const InertialState& to, const Preintegration& imu);
+
 }  // namespace lintel
