@@ -16,7 +16,7 @@
 
 namespace lintel {
 
-/// What one sensor delivers, with even times where `Times` (ArrivalTimes, FrameTimes) finds that it was stamped on
+/// What one sensor delivers, with even times where `Times` (SampleTimes, FrameTimes) finds that it was stamped on
 /// arrival; else as it is. An Item has a time `t_ns`.
 template <typename Item, typename Times>
 class EvenTimes {
@@ -28,7 +28,7 @@ class EvenTimes {
   /// what is found. A fault (RecordingError) is thrown when all that were read before it are delivered.
   std::optional<Item> next(const Read& read, const Say& say) {
     if (!times_) lookAtFirst(read, say);
-    return times_->found() ? nextEven(read) : nextAsItIs(read);
+    return times_ && times_->found() ? nextEven(read) : nextAsItIs(read);
   }
 
  private:
@@ -40,6 +40,7 @@ class EvenTimes {
       stamps.push_back(item->t_ns);
       waiting_.push_back(std::move(*item));
     }
+    if (stamps.empty()) return;  // they may begin later
     times_.emplace(stamps);
     if (!times_->found()) return;
     char text[80];

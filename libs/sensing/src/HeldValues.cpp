@@ -58,8 +58,9 @@ Eigen::Vector3d HeldValues::between(const Sensor& sensor) const {
 }
 
 std::optional<ImuSample> HeldValues::pop(bool at_end) {
+  if (next_ == samples_.size()) return std::nullopt;
   if (at_end && !looked_) look();
-  if (!looked_ || next_ == samples_.size()) return std::nullopt;
+  if (!looked_) return std::nullopt;
   ImuSample sample = samples_[next_];
   for (const Sensor& sensor : sensors_) {
     if (!at_end && !isKnown(sensor)) return std::nullopt;

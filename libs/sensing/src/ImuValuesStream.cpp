@@ -22,7 +22,7 @@ std::optional<ImuSample> ImuValuesStream::pop(bool at_end, const WarningSink& wa
 }
 
 std::optional<ImuSample> ImuValuesStream::nextImu(std::int64_t needed_ns, const WarningSink& warn) {
-  const auto read = [&](std::int64_t ahead_ns) { return stream_->nextImu(needed_ns + ahead_ns, warn); };
+  const auto read = [&](std::int64_t ahead_ns) { return source().nextImu(needed_ns + ahead_ns, warn); };
   while (true) {
     if (const std::optional<ImuSample> sample = pop(false, warn)) return sample;
     const std::optional<ImuSample> next = ahead_.next(read, held_.hasLooked() ? 0 : HeldValues::kLook_ns);

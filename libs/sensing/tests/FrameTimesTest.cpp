@@ -7,10 +7,13 @@
 #include <random>
 #include <vector>
 
+#include "EvenedStamps.h"
+
 namespace lintel {
 namespace {
 
-using Stamps = std::vector<std::int64_t>;
+using test::evened;
+using test::Stamps;
 
 constexpr double kPeriod_ms = 50;
 
@@ -32,18 +35,6 @@ struct Arrivals {
     }
   }
 };
-
-Stamps evenedFrames(const Stamps& stamps) {
-  FrameTimes times(Stamps(stamps.begin(), stamps.begin() + 40));
-  EXPECT_TRUE(times.found());
-  Stamps out;
-  for (const std::int64_t t_ns : stamps) {
-    times.push(t_ns);
-    while (const auto next = times.pop(false)) out.push_back(*next);
-  }
-  while (const auto next = times.pop(true)) out.push_back(*next);
-  return out;
-}
 
 /// Standard deviation of the stamps from the times at which the images were taken [ms].
 double scatter_ms(const Arrivals& arrivals, const Stamps& stamps) {
@@ -72,18 +63,19 @@ const auto kDelayed = [](double mean_ms) {
 TEST(FrameTimes, StampsThatScatterAreEvened) {
   for (const double sigma_ms : {1.0, 4.0}) {
     const Arrivals arrivals(500, 0, kNormal(sigma_ms));
-    EXPECT_LT(scatter_ms(arrivals, evenedFrames(arrivals.stamps)), 0.35 * sigma_ms);
+    EXPECT_LT(scatter_ms(arrivals, evened<FrameTimes>(arrivals.stamps, 40)), 0.35 * sigma_ms);
   }
 }
 
 TEST(FrameTimes, FramesThatWereLostAreCounted) {
   const Arrivals arrivals(700, 0.3, kDelayed(5));
-  EXPECT_LT(scatter_ms(arrivals, evenedFrames(arrivals.stamps)), 0.4 * scatter_ms(arrivals, arrivals.stamps));
+  EXPECT_LT(scatter_ms(arrivals, evened<FrameTimes>(arrivals.stamps, 40)), 0.4 * scatter_ms(arrivals, arrivals.stamps));
 }
 
 TEST(FrameTimes, LongDelaysDoNotShiftTheOthers) {
   const Arrivals arrivals(500, 0, kDelayed(8));
-  EXPECT_LT(scatter_ms(arrivals, evenedFrames(arrivals.stamps)), 0.35 * scatter_ms(arrivals, arrivals.stamps));
+  EXPECT_LT(scatter_ms(arrivals, evened<FrameTimes>(arrivals.stamps, 40)),
+            0.35 * scatter_ms(arrivals, arrivals.stamps));
 }
 
 TEST(FrameTimes, ThreeFramesThatWereHeldUpTogetherHaveTheirOwnTimes) {
@@ -93,7 +85,7 @@ TEST(FrameTimes, ThreeFramesThatWereHeldUpTogetherHaveTheirOwnTimes) {
   };
   const Arrivals arrivals(400, 0, late_ms);
   EXPECT_GT(scatter_ms(arrivals, arrivals.stamps), 5);
-  EXPECT_LT(scatter_ms(arrivals, evenedFrames(arrivals.stamps)), 0.6);
+  EXPECT_LT(scatter_ms(arrivals, evened<FrameTimes>(arrivals.stamps, 40)), 0.6);
 }
 
 TEST(FrameTimes, ACameraThatChangesItsRateIsFollowed) {
@@ -104,7 +96,7 @@ TEST(FrameTimes, ACameraThatChangesItsRateIsFollowed) {
     arrivals.taken_ms[i] = arrivals.taken_ms[i - 1] + 1.1 * kPeriod_ms;
     arrivals.stamps[i] = std::llround(1e6 * (arrivals.taken_ms[i] + jitter(random)));
   }
-  EXPECT_LT(scatter_ms(arrivals, evenedFrames(arrivals.stamps)), 1.1 * 3);
+  EXPECT_LT(scatter_ms(arrivals, evened<FrameTimes>(arrivals.stamps, 40)), 1.1 * 3);
 }
 
 TEST(FrameTimes, StampsOfTheCameraItselfAreLeft) {

@@ -87,6 +87,13 @@ TEST(HeldValues, SamplesThatAreRepeatedWholeAreInterpolated) {
   }
 }
 
+TEST(HeldValues, WhatBeginsLaterIsLookedAtThen) {
+  HeldValues values;
+  EXPECT_FALSE(values.pop(true));
+  through(values, held(1000, 0.016));
+  EXPECT_NE(values.remark(), "");
+}
+
 TEST(HeldValues, ASensorThatStopsKeepsItsLastValue) {
   Samples in = held(1000, 0.016);
   for (std::size_t i = 600; i < 800; ++i) in[i].accel = in[599].accel;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "ArrivalTimes.h"
+#include "SampleTimes.h"
 
 #include <gtest/gtest.h>
 
@@ -10,12 +10,14 @@
 #include <vector>
 
 #include "EvenTimes.h"
+#include "EvenedStamps.h"
 #include "lintel/core/Frame.h"
 
 namespace lintel {
 namespace {
 
-using Stamps = std::vector<std::int64_t>;
+using test::evened;
+using test::Stamps;
 
 constexpr std::int64_t kPeriod_ns = 5'000'000, kLate_ns = 1'000'000;
 
@@ -34,22 +36,10 @@ Stamps arrivals(std::size_t n, std::size_t each, std::int64_t apart_ns = 100'000
   return stamps;
 }
 
-Stamps evened(const Stamps& stamps) {
-  ArrivalTimes times(stamps);
-  EXPECT_TRUE(times.found());
-  Stamps out;
-  for (const std::int64_t t_ns : stamps) {
-    times.push(t_ns);
-    while (const auto next = times.pop(false)) out.push_back(*next);
-  }
-  while (const auto next = times.pop(true)) out.push_back(*next);
-  return out;
-}
-
-TEST(ArrivalTimes, SamplesOfPacketsAreSpreadEvenly) {
+TEST(SampleTimes, SamplesOfPacketsAreSpreadEvenly) {
   for (const std::int64_t apart_ns : {100'000, 0})  // 0: the packet has one stamp
     for (const std::size_t each : {2, 4, 10}) {
-      const Stamps out = evened(arrivals(2000, each, apart_ns));
+      const Stamps out = evened<SampleTimes>(arrivals(2000, each, apart_ns), 400);
       ASSERT_EQ(out.size(), 2000U);
       std::vector<double> late_ms;
       for (std::size_t i = 300; i + 300 < out.size(); ++i)
@@ -60,21 +50,21 @@ TEST(ArrivalTimes, SamplesOfPacketsAreSpreadEvenly) {
     }
 }
 
-TEST(ArrivalTimes, SaysHowTheyCome) {
-  const ArrivalTimes times(arrivals(400, 4));
+TEST(SampleTimes, SaysHowTheyCome) {
+  const SampleTimes times(arrivals(400, 4));
   EXPECT_NE(times.remark().find("packets of about 4"), std::string::npos) << times.remark();
   EXPECT_NEAR(times.rate_hz(), 200, 2);
 }
 
-TEST(ArrivalTimes, TimesAscendFromTheFirstToTheLast) {
-  const Stamps out = evened(arrivals(700, 10));
+TEST(SampleTimes, TimesAscendFromTheFirstToTheLast) {
+  const Stamps out = evened<SampleTimes>(arrivals(700, 10), 400);
   for (std::size_t i = 1; i < out.size(); ++i) EXPECT_NEAR(1e-6 * static_cast<double>(out[i] - out[i - 1]), 5, 1.5);
 }
 
-TEST(ArrivalTimes, WhatFollowsADropOutHasItsOwnLine) {
+TEST(SampleTimes, WhatFollowsADropOutHasItsOwnLine) {
   Stamps stamps = arrivals(2000, 4);
   for (std::size_t i = 1000; i < stamps.size(); ++i) stamps[i] += 300'000'000;
-  const Stamps out = evened(stamps);
+  const Stamps out = evened<SampleTimes>(stamps, 400);
   ASSERT_EQ(out.size(), 2000U);
   EXPECT_NEAR(1e-6 * static_cast<double>(out[1000] - out[999]), 305, 3);
   EXPECT_NEAR(1e-6 * static_cast<double>(out[999] - out[998]), 5, 1);
@@ -92,9 +82,9 @@ Stamps shaken(double sigma_ms) {
   return stamps;
 }
 
-TEST(ArrivalTimes, StampsThatScatterAboutEvenOnesAreEvened) {
+TEST(SampleTimes, StampsThatScatterAboutEvenOnesAreEvened) {
   for (const double sigma_ms : {0.7, 1.5}) {
-    const Stamps out = evened(shaken(sigma_ms));
+    const Stamps out = evened<SampleTimes>(shaken(sigma_ms), 400);
     ASSERT_EQ(out.size(), 2000U);
     double squares = 0;
     for (std::size_t i = 0; i < out.size(); ++i)
@@ -103,7 +93,7 @@ TEST(ArrivalTimes, StampsThatScatterAboutEvenOnesAreEvened) {
   }
 }
 
-TEST(ArrivalTimes, StampsOfTheSensorItselfAreLeft) {
+TEST(SampleTimes, StampsOfTheSensorItselfAreLeft) {
   std::mt19937_64 random(2);
   std::uniform_real_distribution<double> uniform(0, 1);
   Stamps even(400), missing(400), uneven(400);
@@ -112,18 +102,18 @@ TEST(ArrivalTimes, StampsOfTheSensorItselfAreLeft) {
     missing[i] = missing[i - 1] + kPeriod_ns * (uniform(random) < 0.1 ? 2 : 1);  // every tenth is lost
     uneven[i] = uneven[i - 1] + std::llround((0.5 + uniform(random)) * 5e6);
   }
-  EXPECT_FALSE(ArrivalTimes(even).found());
-  EXPECT_FALSE(ArrivalTimes(missing).found());
-  EXPECT_FALSE(ArrivalTimes(uneven).found());
-  EXPECT_FALSE(ArrivalTimes(shaken(0.2)).found()) << "too little to matter";
-  EXPECT_FALSE(ArrivalTimes(Stamps(3)).found()) << "too few to say";
-  EXPECT_FALSE(ArrivalTimes(Stamps(400)).found()) << "all at one time";
+  EXPECT_FALSE(SampleTimes(even).found());
+  EXPECT_FALSE(SampleTimes(missing).found());
+  EXPECT_FALSE(SampleTimes(uneven).found());
+  EXPECT_FALSE(SampleTimes(shaken(0.2)).found()) << "too little to matter";
+  EXPECT_FALSE(SampleTimes(Stamps(3)).found()) << "too few to say";
+  EXPECT_FALSE(SampleTimes(Stamps(400)).found()) << "all at one time";
 }
 
 TEST(EvenTimes, AFaultIsThrownWhenAllThatCameBeforeItAreDelivered) {
   for (const std::size_t each : {1, 4}) {
     const Stamps stamps = arrivals(600, each);
-    EvenTimes<ImuSample, ArrivalTimes> even;
+    EvenTimes<ImuSample, SampleTimes> even;
     std::size_t read = 0, delivered = 0;
     const auto next = [&](std::int64_t) -> std::optional<ImuSample> {
       if (read == stamps.size()) throw RecordingError("cut");
@@ -143,6 +133,25 @@ TEST(EvenTimes, AFaultIsThrownWhenAllThatCameBeforeItAreDelivered) {
     EXPECT_THROW(deliver(), RecordingError);
     EXPECT_EQ(remark.empty(), each == 1) << remark;
   }
+}
+
+TEST(EvenTimes, WhatBeginsLaterIsLookedAtThen) {
+  const Stamps stamps = arrivals(600, 4);
+  EvenTimes<ImuSample, SampleTimes> even;
+  std::size_t read = 0;
+  bool begun = false;
+  const auto next = [&](std::int64_t) -> std::optional<ImuSample> {
+    if (!begun || read == stamps.size()) return std::nullopt;
+    ImuSample sample;
+    sample.t_ns = 1'000'000'000 + stamps[read++];
+    return sample;
+  };
+  std::string remark;
+  const auto deliver = [&] { return even.next(next, [&](const std::string& said) { remark = said; }); };
+  EXPECT_FALSE(deliver());
+  begun = true;
+  EXPECT_TRUE(deliver());
+  EXPECT_NE(remark, "");
 }
 
 }  // namespace

@@ -14,13 +14,13 @@ namespace lintel {
 /// packets, and all of a packet bear nearly the same time; or each is late by an amount of its own. The sensor takes
 /// them evenly: each gets the time that a straight line through the stamps of a second before and after has at its
 /// number. What all are late by stays: it is part of the offset between the clocks.
-class ArrivalTimes {
+class SampleTimes {
  public:
   static constexpr std::int64_t kLook_ns = 2'000'000'000;   ///< of samples, to see how they come
   static constexpr std::int64_t kAhead_ns = 1'500'000'000;  ///< what pop() needs after one, and a packet
 
   /// Looks at the first samples' stamps [ns], ascending.
-  explicit ArrivalTimes(const std::vector<std::int64_t>& first);
+  explicit SampleTimes(const std::vector<std::int64_t>& first);
 
   /// Whether `seen` are enough for the constructor.
   static bool suffice(const std::vector<std::int64_t>& seen) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "ArrivalTimes.h"
+#include "SampleTimes.h"
 
 #include <algorithm>
 #include <cmath>
@@ -54,7 +54,7 @@ Intervals intervalsOf(const std::vector<std::int64_t>& stamps) {
 
 }  // namespace
 
-ArrivalTimes::ArrivalTimes(const std::vector<std::int64_t>& first) {
+SampleTimes::SampleTimes(const std::vector<std::int64_t>& first) {
   if (first.size() < kLeastSamples) return;
   const Intervals intervals = intervalsOf(first);
   if (intervals.mean_ns <= 0) return;  // all stamped together
@@ -73,13 +73,13 @@ ArrivalTimes::ArrivalTimes(const std::vector<std::int64_t>& first) {
 }
 
 /// Whether there is a drop-out before sample i.
-bool ArrivalTimes::startsAnew(std::size_t i) const {
+bool SampleTimes::startsAnew(std::size_t i) const {
   return static_cast<double>(stamps_[i] - stamps_[i - 1]) > drop_out_ns_;
 }
 
 /// A line by least squares; stamps count less the farther they are, so that where the window cuts a packet does not
 /// matter.
-std::int64_t ArrivalTimes::timeOf(std::size_t i) const {
+std::int64_t SampleTimes::timeOf(std::size_t i) const {
   StampLine line;
   const auto add = [&](std::size_t j) {
     const double k = static_cast<double>(j) - static_cast<double>(i);
@@ -96,7 +96,7 @@ std::int64_t ArrivalTimes::timeOf(std::size_t i) const {
   return stamps_[i] + std::llround(line.at(0));
 }
 
-std::optional<std::int64_t> ArrivalTimes::pop(bool at_end) {
+std::optional<std::int64_t> SampleTimes::pop(bool at_end) {
   const auto reach = static_cast<std::size_t>(kReach_ns / mean_ns_) + 1;
   if (next_ == stamps_.size() || (!at_end && next_ + reach >= stamps_.size())) return std::nullopt;
   const std::int64_t t_ns = timeOf(next_++);
