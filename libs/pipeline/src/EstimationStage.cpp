@@ -84,7 +84,17 @@ void EstimationStage::withdrawStart() {
   was_blind_ = false;
 }
 
+/// An IMU that ends before the last images does not interrupt the flight: nothing begins anew.
+void EstimationStage::leaveOutEnd() {
+  constexpr std::int64_t kLongest_ns = 500'000'000;
+  OdometryStatistics& s = result_.statistics;
+  if (!interrupted_ns_ || s.last_frame_ns - *interrupted_ns_ > kLongest_ns) return;
+  --s.resets;
+  s.failures.pop_back();
+}
+
 void EstimationStage::finish(const FinishOptions& options) {
+  leaveOutEnd();
   const CalibrationEstimate calibration = result_.window_calibration = estimator_.calibration();
   result_.rig = rig_;
   result_.rig.camera = calibration.camera;
@@ -175,6 +185,7 @@ void EstimationStage::count(const WindowUpdate& update) {
   s.frames_with_pose = result_.trajectory.size();
   s.first_pose_s = result_.trajectory.empty() ? -1 : secondsOf(result_.trajectory.front().t_ns);
   if (update.hasPose()) {
+    interrupted_ns_.reset();
     if (s.first_start_s < 0) s.first_start_s = t_s;
   } else if (update.status == EstimatorStatus::kInitializing && update.reason != "between window frames") {
     s.last_wait = update.reason;
@@ -184,6 +195,7 @@ void EstimationStage::count(const WindowUpdate& update) {
     char text[64];
     std::snprintf(text, sizeof text, "at %.2f s: ", t_s);
     s.failures.push_back(text + update.reason);
+    if (update.failure == Failure::kInterrupted) interrupted_ns_ = update.t_ns;
   }
   if (update.status == EstimatorStatus::kTracking) {
     countWindow(update);

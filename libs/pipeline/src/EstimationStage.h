@@ -34,6 +34,7 @@ class EstimationStage {
   void addPoses(const WindowUpdate& update);
   void withdrawStart();
   void count(const WindowUpdate& update);
+  void leaveOutEnd();
   double secondsOf(std::int64_t t_ns) const;
   void countWindow(const WindowUpdate& update);
   void countBlind(bool blind, double t_s);
@@ -47,6 +48,7 @@ class EstimationStage {
   const BatchRefinement refinement_;
   OdometryResult& result_;
   bool was_blind_ = false;
+  std::optional<std::int64_t> interrupted_ns_;         ///< without a pose since then
   std::size_t settled_poses_ = 0, settled_blind_ = 0;  ///< of former starts
 };
 

@@ -65,5 +65,39 @@ TEST(EstimationStage, PosesOfAWrongStartAreLeftOut) {
   for (const MapKeyframe& keyframe : result.map.keyframes) EXPECT_TRUE(ids.insert(keyframe.id).second);
 }
 
+/// A flight whose IMU has no samples from one frame to another.
+OdometryResult flightWithoutImu(double from_s, double to_s) {
+  const Rig rig = eurocRig();
+  Configuration configuration;
+  configuration.refinement.enabled = configuration.densification.enabled = false;
+  OdometryResult result;
+  EstimationStage stage(rig, configuration, result);
+  std::vector<TrackedFrame> flight = flightWithWrongBeginning(rig, 0);
+  for (TrackedFrame& frame : flight) {
+    const double t_s = 1e-9 * static_cast<double>(frame.tracks.t_ns - flight.front().tracks.t_ns);
+    if (t_s > from_s && t_s < to_s) frame.step.imu.clear();
+    stage.process(frame);
+  }
+  stage.finish({});
+  EXPECT_FALSE(result.map.keyframes.empty());
+  return result;
+}
+
+TEST(EstimationStage, AnImuThatEndsBeforeTheLastImagesIsNoReset) {
+  const OdometryResult result = flightWithoutImu(7.7, 100);
+  const OdometryStatistics& s = result.statistics;
+  ASSERT_GT(s.frames_with_pose, 100u);
+  EXPECT_LT(result.trajectory.back().t_ns, s.last_frame_ns - 150'000'000);
+  EXPECT_EQ(s.resets, 0u);
+  EXPECT_TRUE(s.failures.empty());
+}
+
+TEST(EstimationStage, AnImuThatEndsLongBeforeTheImagesOrComesBackIsOne) {
+  EXPECT_EQ(flightWithoutImu(6, 100).statistics.resets, 1u);
+  const OdometryStatistics s = flightWithoutImu(4, 4.3).statistics;
+  EXPECT_EQ(s.resets, 1u);
+  EXPECT_EQ(s.failures.size(), 1u);
+}
+
 }  // namespace
 }  // namespace lintel
