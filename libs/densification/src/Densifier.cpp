@@ -97,9 +97,7 @@ class Densifier {
   LineView viewOf(const Sighting& s, TrackId track) const {
     const SegmentView& view = views_[s.view];
     const EdgeSegment& edge = view.segments[s.segment];
-    return {
-        view.keyframe, track, edge.start_px.cast<float>(), edge.end_px.cast<float>(), static_cast<float>(edge.sigma_px),
-        true};
+    return {view.keyframe, track, edge.start_px, edge.end_px, edge.sigma_px, true};
   }
 
   /// Lines that the map has get the edges on them as views where tracking had none; these edges are no candidates.

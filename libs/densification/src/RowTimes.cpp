@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <tuple>
 #include <unordered_map>
 
 #include "lintel/core/Quantiles.h"
@@ -45,8 +44,11 @@ void RowTimes::move(std::size_t k, std::vector<EdgeSegment>& edges) const {
   const auto rayAtFrameTime = [&](const Eigen::Vector2d& px) {
     return motion.rayAtFrameTime(camera.ray(px).normalized(), rowShare(camera, px) * readout_s_, inverse_distance_[k]);
   };
-  for (EdgeSegment& edge : edges)
-    std::tie(edge.start_px, edge.end_px) = lineAtFrameTime(camera, camera, edge.start_px, edge.end_px, rayAtFrameTime);
+  for (EdgeSegment& edge : edges) {
+    const auto [start_px, end_px] =
+        lineAtFrameTime(camera, camera, edge.start_px.cast<double>(), edge.end_px.cast<double>(), rayAtFrameTime);
+    edge.start_px = start_px.cast<float>(), edge.end_px = end_px.cast<float>();
+  }
 }
 
 RowMotion RowTimes::motionDuring(std::size_t k) const {

@@ -14,7 +14,8 @@ SegmentView::SegmentView(const KeyframeCameras& cameras, FrameId id, std::vector
   start.resize(n, 3), end.resize(n, 3), normal.resize(n, 3), length.resize(n);
   for (Eigen::Index i = 0; i < n; ++i) {
     const EdgeSegment& s = segments[static_cast<std::size_t>(i)];
-    const Eigen::Vector3d a = cameras.ray(s.start_px).normalized(), b = cameras.ray(s.end_px).normalized();
+    const Eigen::Vector3d a = cameras.ray(s.start_px.cast<double>()).normalized(),
+                          b = cameras.ray(s.end_px.cast<double>()).normalized();
     const Eigen::Vector3d cross = a.cross(b);
     start.row(i) = a.cast<float>(), end.row(i) = b.cast<float>();
     normal.row(i) = cross.normalized().cast<float>();

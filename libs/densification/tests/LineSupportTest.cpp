@@ -30,7 +30,7 @@ class LineSupportTest : public testing::Test {
 };
 
 TEST_F(LineSupportTest, CoverIsTheShareOfItsAngleOnEdges) {
-  const SegmentView view = viewOf({{{150, 200}, {200, 200}, 0.3}});
+  const SegmentView view = viewOf({{{150, 200}, {200, 200}, 0.3f}});
   const SeenSegment seen = seenSegment(view, segment_);
   EXPECT_NEAR(seen.length_rad, 2 * std::atan(0.5), 1e-9);
   const LineSupport support = supportOf(view, seen, 2, false, nullptr);
@@ -40,13 +40,13 @@ TEST_F(LineSupportTest, CoverIsTheShareOfItsAngleOnEdges) {
 }
 
 TEST_F(LineSupportTest, EdgesThatOverlapCountOnce) {
-  const SegmentView view = viewOf({{{150, 200}, {210, 200}, 0.3}, {{190, 200.5}, {250, 200.5}, 0.3}});
+  const SegmentView view = viewOf({{{150, 200}, {210, 200}, 0.3f}, {{190, 200.5}, {250, 200.5}, 0.3f}});
   EXPECT_NEAR(supportOf(view, seenSegment(view, segment_), 2, false, nullptr).cover, 1, 1e-6);
 }
 
 TEST_F(LineSupportTest, OnlyEdgesThatMayBeItsOwnCount) {
-  const EdgeSegment aside{{150, 203}, {250, 203}, 0.3}, turned{{150, 198.5}, {165, 201.5}, 0.3},
-      other_side{{250, 200}, {150, 200}, 0.3}, beyond{{300, 200}, {390, 200}, 0.3};
+  const EdgeSegment aside{{150, 203}, {250, 203}, 0.3f}, turned{{150, 198.5}, {165, 201.5}, 0.3f},
+      other_side{{250, 200}, {150, 200}, 0.3f}, beyond{{300, 200}, {390, 200}, 0.3f};
   for (const EdgeSegment& edge : {aside, turned, other_side, beyond}) {
     const SegmentView view = viewOf({edge});
     EXPECT_EQ(supportOf(view, seenSegment(view, segment_), 2, false, nullptr).cover, 0) << edge.start_px.transpose();
@@ -54,16 +54,16 @@ TEST_F(LineSupportTest, OnlyEdgesThatMayBeItsOwnCount) {
 }
 
 TEST_F(LineSupportTest, TakenEdgesCountWhereAskedFor) {
-  SegmentView view = viewOf({{{150, 200}, {250, 200}, 0.3}});
+  SegmentView view = viewOf({{{150, 200}, {250, 200}, 0.3f}});
   view.taken[0] = 1;
   EXPECT_EQ(supportOf(view, seenSegment(view, segment_), 2, false, nullptr).cover, 0);
   EXPECT_NEAR(supportOf(view, seenSegment(view, segment_), 2, true, nullptr).cover, 1, 1e-6);
 }
 
 TEST_F(LineSupportTest, EdgesOfOtherGreyLevelsDoNotCount) {
-  const SegmentView view = viewOf({{{150, 200}, {250, 200}, 0.3, 80, 120}});
+  const SegmentView view = viewOf({{{150, 200}, {250, 200}, 0.3f, 80, 120}});
   const auto cover = [&](float dark, float bright) {
-    const EdgeLook look(EdgeSegment{{}, {}, 0.3, dark, bright});
+    const EdgeLook look(EdgeSegment{{}, {}, 0.3f, dark, bright});
     return supportOf(view, seenSegment(view, segment_), 2, false, &look).cover;
   };
   EXPECT_NEAR(cover(80, 120), 1, 1e-6);
@@ -88,10 +88,10 @@ TEST_F(LineSupportTest, OfALongSegmentThePartWithinTheImageIsSeen) {
 }
 
 TEST_F(LineSupportTest, ChanceIsWhatEdgesBesideWouldCover) {
-  const SegmentView alone = viewOf({{{150, 200}, {250, 200}, 0.3}});
+  const SegmentView alone = viewOf({{{150, 200}, {250, 200}, 0.3f}});
   EXPECT_EQ(chanceOf(alone, seenSegment(alone, segment_), 2, kAny), 0) << "its own edge is no chance";
   std::vector<EdgeSegment> hatching;
-  for (double y = 150; y <= 250; y += 3) hatching.push_back({{120, y}, {280, y}, 0.3});
+  for (double y = 150; y <= 250; y += 3) hatching.push_back({{120, y}, {280, y}, 0.3f});
   const SegmentView hatched = viewOf(hatching);
   EXPECT_GT(chanceOf(hatched, seenSegment(hatched, segment_), 2, kAny), 0.9);
 }

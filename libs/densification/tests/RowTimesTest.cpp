@@ -14,7 +14,7 @@ class RowTimesTest : public testing::Test {
  protected:
   RowTimesTest() {
     MapMaterial& m = flight_.material;
-    m.rig.T_b_c = {expRotation({0.1, -0.2, 0.3}), {0.03, 0.02, -0.01}};
+    m.rig.T_b_c = {expRotation({0.1, -0.2, 0.3f}), {0.03, 0.02, -0.01}};
     for (RetiredKeyframe& k : m.keyframes) {
       k.T_w_b = poseAt(1e-9 * static_cast<double>(k.t_ns));
       k.v_w_b = v_w_;
@@ -25,7 +25,7 @@ class RowTimesTest : public testing::Test {
       PointRecord point;
       point.known = true;
       point.p_w = at(k, {200, 300});
-      point.views = {{k.id, {200, 300}, true}};
+      point.views = {{static_cast<std::uint32_t>(k.id), {200, 300}, true}};
       m.points.push_back(point);
     }
   }
@@ -57,8 +57,9 @@ TEST_F(RowTimesTest, EdgesOfARollingShutterAreMovedToTheFramesTime) {
   flight_.material.rig.line_delay_s = 0.02 / 480;
   const RowTimes rows(flight_.material);
   const RetiredKeyframe& k = flight_.material.keyframes[4];
-  const Eigen::Vector2d start(100, 140), end(160, 330);  // short: the rows bend it by 0.04 px
-  std::vector<EdgeSegment> edges{{seenByRow(k, start), seenByRow(k, end), 0.3}};
+  const Eigen::Vector2f start(100, 140), end(160, 330);  // short: the rows bend it by 0.04 px
+  std::vector<EdgeSegment> edges{
+      {seenByRow(k, start.cast<double>()).cast<float>(), seenByRow(k, end.cast<double>()).cast<float>(), 0.3f}};
   ASSERT_GT((edges[0].start_px - start).norm(), 1);
   rows.move(4, edges);
   EXPECT_LT((edges[0].start_px - start).norm(), 0.1);
@@ -67,10 +68,10 @@ TEST_F(RowTimesTest, EdgesOfARollingShutterAreMovedToTheFramesTime) {
 
 TEST_F(RowTimesTest, EdgesOfAGlobalShutterStay) {
   const RowTimes rows(flight_.material);
-  std::vector<EdgeSegment> edges{{{100, 40}, {600, 430}, 0.3}};
+  std::vector<EdgeSegment> edges{{{100, 40}, {600, 430}, 0.3f}};
   rows.move(4, edges);
-  EXPECT_EQ(edges[0].start_px, Eigen::Vector2d(100, 40));
-  EXPECT_EQ(edges[0].end_px, Eigen::Vector2d(600, 430));
+  EXPECT_EQ(edges[0].start_px, Eigen::Vector2f(100, 40));
+  EXPECT_EQ(edges[0].end_px, Eigen::Vector2f(600, 430));
 }
 
 }  // namespace

@@ -28,7 +28,7 @@ class TestFlight {
       point.id = id, point.known = true;
       point.p_w = {between(-2, 2), between(-1.5, 1.5), between(4.5, 5.5)};
       for (const RetiredKeyframe& k : material.keyframes)
-        point.views.push_back({k.id, pixelOf(k, point.p_w).cast<float>(), true});
+        point.views.push_back({static_cast<std::uint32_t>(k.id), pixelOf(k, point.p_w).cast<float>(), true});
       material.points.push_back(point);
     }
   }
@@ -42,10 +42,12 @@ class TestFlight {
   /// What a keyframe sees of a segment, whose brighter side is that of start x end.
   EdgeSegment edgeOf(const RetiredKeyframe& k, const Segment3& segment_w, double noise_px = 0.2) {
     std::normal_distribution<double> noise(0, noise_px);
-    EdgeSegment edge{pixelOf(k, segment_w.start), pixelOf(k, segment_w.end), 0.3};
-    const Eigen::Vector2d along = (edge.end_px - edge.start_px).normalized(), across(-along.y(), along.x());
-    edge.start_px += noise(random_) * across + between(0, 3) * along;
-    edge.end_px += noise(random_) * across - between(0, 3) * along;
+    const Eigen::Vector2d start_px = pixelOf(k, segment_w.start), end_px = pixelOf(k, segment_w.end);
+    const Eigen::Vector2d along = (end_px - start_px).normalized(), across(-along.y(), along.x());
+    EdgeSegment edge;
+    edge.start_px = (start_px + noise(random_) * across + between(0, 3) * along).cast<float>();
+    edge.end_px = (end_px + noise(random_) * across - between(0, 3) * along).cast<float>();
+    edge.sigma_px = 0.3f;
     return edge;
   }
 
@@ -60,7 +62,8 @@ class TestFlight {
       for (int i = 0; i < each; ++i) {
         const Eigen::Vector2d at(between(30, 700), between(30, 440));
         const double angle = between(0, 2 * M_PI), length = between(20, 80);
-        edges[k.t_ns].push_back({at, at + length * Eigen::Vector2d(std::cos(angle), std::sin(angle)), 0.3});
+        const Eigen::Vector2d end = at + length * Eigen::Vector2d(std::cos(angle), std::sin(angle));
+        edges[k.t_ns].push_back({at.cast<float>(), end.cast<float>(), 0.3f});
       }
   }
 
@@ -70,8 +73,7 @@ class TestFlight {
     line.id = id;
     for (std::size_t k = 0; k < views; ++k) {
       const EdgeSegment edge = edgeOf(material.keyframes[k], segment_w);
-      line.views.push_back(
-          {material.keyframes[k].id, id, edge.start_px.cast<float>(), edge.end_px.cast<float>(), 0.3f, true});
+      line.views.push_back({material.keyframes[k].id, id, edge.start_px, edge.end_px, 0.3f, true});
     }
     return line;
   }

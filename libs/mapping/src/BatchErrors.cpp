@@ -6,6 +6,7 @@
 #include "BatchProblem.h"
 #include "CameraErrors.h"
 #include "ReducedSystem.h"
+#include "lintel/core/FreeMemory.h"
 
 namespace lintel {
 
@@ -60,7 +61,7 @@ std::vector<double*> BatchProblem::blocksOfErrors(const std::vector<std::size_t>
   }
   for (const std::size_t k : anchors) {
     blocks.insert(blocks.end(), {at(poseAt(k)), at(motionAt(k))});
-    tiles.push_back(kPoseTangent + kMotionSize);
+    tiles.insert(tiles.end(), {kPoseTangent, kMotionSize});  // poses meet in many tiles, motions in few
   }
   for (std::size_t i = 0; i < meanBiases(); ++i) {
     blocks.push_back(at(meanBiasOf(i)));
@@ -99,7 +100,18 @@ std::vector<CameraErrors> BatchProblem::drawErrors() {
     if (!add(landmark_residuals_[i], landmark_residuals_[j], i < points ? point_weight : line_weight)) return {};
     i = j;
   }
+  release();
   return cameraErrors(system.draw(kErrorDraws), anchors);
+}
+
+/// All residuals: what follows needs the memory.
+void BatchProblem::release() {
+  problem_.reset();
+  own_factors_.clear();
+  point_factors_.clear();
+  line_factors_.clear();
+  anchor_imu_factors_.clear();
+  returnFreeMemory();
 }
 
 /// Those of all keyframes, from draws of calibration and anchors.

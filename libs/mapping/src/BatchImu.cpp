@@ -20,19 +20,25 @@ void BatchProblem::countStamps(std::size_t from, std::size_t to, Preintegration&
     countStampJitter(sigma_s, stateOf(start), stateOf(end), imu);
 }
 
+/// From the keyframe before to this one, linearised at its biases in the material; none where no samples lead here.
+std::unique_ptr<ImuFactor> BatchProblem::imuFactor(std::size_t k) const {
+  const RetiredKeyframe& keyframe = material_.keyframes[k];
+  if (!keyframe.imu || keyframe.imu->dt_s() <= 0) return nullptr;
+  auto imu = std::make_shared<Preintegration>(*keyframe.imu);
+  imu->repropagate(material_.keyframes[k - 1].bias);
+  countStamps(k - 1, k, *imu);
+  return std::make_unique<ImuFactor>(std::move(imu));
+}
+
 void BatchProblem::addImu() {
   std::shared_ptr<Preintegration> whole;  // since the last anchor
   for (std::size_t k = 1; k < material_.keyframes.size(); ++k) {
     const RetiredKeyframe& keyframe = material_.keyframes[k];
     if (!keyframe.imu || keyframe.imu->dt_s() <= 0) continue;
-    auto imu = std::make_shared<Preintegration>(*keyframe.imu);
-    imu->repropagate(material_.keyframes[k - 1].bias);
-    countStamps(k - 1, k, *imu);
-    imu_factors_.emplace_back(k, std::make_unique<ImuFactor>(imu));
     if (whole) {
-      whole->append(*imu);
+      whole->append(*keyframe.imu);
     } else {
-      whole = std::make_shared<Preintegration>(*imu);
+      whole = std::make_shared<Preintegration>(*keyframe.imu);
     }
     if (!isAnchor(k)) continue;
     std::size_t from = k - 1;
@@ -48,15 +54,19 @@ void BatchProblem::addImu() {
 
 double BatchProblem::imuError() const {
   double sum = 0;
-  for (const auto& [k, factor] : imu_factors_) {
+  std::size_t count = 0;
+  for (std::size_t k = 1; k < material_.keyframes.size(); ++k) {
+    const std::unique_ptr<ImuFactor> factor = imuFactor(k);
+    if (!factor) continue;
     const double* blocks[] = {values_.data() + poseAt(k - 1), values_.data() + motionAt(k - 1),
                               values_.data() + poseAt(k), values_.data() + motionAt(k),
                               values_.data() + meanBiasAt(k - 1)};
     Eigen::Matrix<double, 15, 1> r;
     factor->Evaluate(blocks, r.data(), nullptr);
     sum += r.head<9>().squaredNorm();
+    ++count;
   }
-  return imu_factors_.empty() ? 0 : std::sqrt(sum / (9.0 * static_cast<double>(imu_factors_.size())));
+  return count == 0 ? 0 : std::sqrt(sum / (9.0 * static_cast<double>(count)));
 }
 
 }  // namespace lintel

@@ -80,7 +80,7 @@ void BatchProblem::addView(ImageFactor<Target>& factor, ceres::LossFunction& los
   }
   carried_views_.push_back({&factor, &loss, keyframe, landmark});
   const auto [a, b] = anchors_[keyframe];
-  own_factors_.push_back(std::make_unique<CarriedView<Target>>(factor, carriage(keyframe)));
+  own_factors_.push_back(std::make_unique<CarriedView<Target>>(factor, carriages_[keyframe]));
   problem_->AddResidualBlock(own_factors_.back().get(), &loss, at(poseAt(a)), at(extrinsics_at_),
                              at(correctionAt(keyframe)), landmark, at(poseAt(b)));
 }

@@ -84,6 +84,7 @@ BatchProblem::BatchProblem(const Rig& calibrated, const EstimatorParams& estimat
     keyframe_places_[id] = static_cast<std::int64_t>(k);
     motions_.push_back(motionOf(material_.keyframes, k));
   }
+  findCarriages();
   findStretches();
   findMeanBiases();
   placeBlocks();

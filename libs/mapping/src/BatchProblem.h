@@ -58,7 +58,7 @@ class BatchProblem {
   void writeBack();
 
   /// What the adjustment leaves open of the keyframes' cameras; empty when that cannot be said. Of a problem without
-  /// groups.
+  /// groups, which it ends: nothing can be solved afterwards.
   std::vector<CameraErrors> drawErrors();
 
   /// RMS of the IMU residuals without the biases' walks, in standard deviations, at the blocks' present values.
@@ -75,6 +75,7 @@ class BatchProblem {
   bool beginsWorld(FrameId keyframe) const;
   void countStamps(std::size_t from, std::size_t to, Preintegration& imu) const;
   void addImu();
+  std::unique_ptr<ImuFactor> imuFactor(std::size_t k) const;
   void findMeanBiases();
   void placeMeanBiases();
   void addMeanBiasWalk();
@@ -87,9 +88,10 @@ class BatchProblem {
   std::vector<CameraErrors> cameraErrors(const Eigen::MatrixXd& drawn, const std::vector<std::size_t>& anchors) const;
   std::vector<double*> blocksOfErrors(const std::vector<std::size_t>& anchors, std::vector<int>& tiles);
   std::pair<double, double> viewWeights(const std::vector<ceres::ResidualBlockId>& blocks) const;
+  void release();
   bool isAnchor(std::size_t k) const;
   double anchorCount() const;
-  Carriage carriage(std::size_t k) const;
+  void findCarriages();
   void carryAlong();
   void settle();
   void settleBetween(std::size_t from, std::size_t to);
@@ -119,6 +121,7 @@ class BatchProblem {
   const EstimatorParams& estimator_;
   MapMaterial& material_;
   const std::vector<Anchors> anchors_;
+  std::vector<Carriage> carriages_;  // by place: how a keyframe hangs on its anchors; that of an anchor says nothing
   std::size_t most_views_;
   double offset_walk_s_;
   std::vector<std::size_t> points_, lines_;  // places in the material
@@ -134,8 +137,7 @@ class BatchProblem {
   ceres::CauchyLoss point_loss_, line_loss_, calibration_loss_, structural_loss_, offset_loss_;
   std::deque<PointFactor> point_factors_;
   std::deque<LineFactor> line_factors_;
-  std::vector<std::pair<std::size_t, std::unique_ptr<ImuFactor>>> imu_factors_;  // with the later keyframe's place
-  std::vector<std::unique_ptr<ImuFactor>> anchor_imu_factors_;                   // from anchor to anchor
+  std::vector<std::unique_ptr<ImuFactor>> anchor_imu_factors_;  // from anchor to anchor
   std::vector<std::size_t> landmark_residuals_;  // the first residual block of each point, of each line; then the end
   std::vector<CarriedResidual> carried_views_;
   std::vector<std::unique_ptr<ceres::CostFunction>> own_factors_;  // the others

@@ -16,12 +16,16 @@ double BatchProblem::anchorCount() const {
   return static_cast<double>(count);
 }
 
-/// How the keyframe hangs on its anchors; as the material has them.
-Carriage BatchProblem::carriage(std::size_t k) const {
+/// How keyframes hang on their anchors; as the material has them.
+void BatchProblem::findCarriages() {
   const std::vector<RetiredKeyframe>& all = material_.keyframes;
-  const RetiredKeyframe &a = all[anchors_[k].main], &b = all[anchors_[k].other];
-  return {all[k].T_w_b, a.T_w_b, b.T_w_b,
-          static_cast<double>(all[k].t_ns - a.t_ns) / static_cast<double>(b.t_ns - a.t_ns)};
+  carriages_.reserve(all.size());
+  for (std::size_t k = 0; k < all.size(); ++k) {
+    const RetiredKeyframe &a = all[anchors_[k].main], &b = all[anchors_[k].other];
+    const double share =
+        isAnchor(k) ? 0 : static_cast<double>(all[k].t_ns - a.t_ns) / static_cast<double>(b.t_ns - a.t_ns);
+    carriages_.emplace_back(all[k].T_w_b, a.T_w_b, b.T_w_b, share);
+  }
 }
 
 /// Keyframes between the anchors, as these carry them.
@@ -30,7 +34,7 @@ void BatchProblem::carryAlong() {
     if (isAnchor(k)) continue;
     const auto [a, b] = anchors_[k];
     const RetiredKeyframe &keyframe = material_.keyframes[k], &anchor = material_.keyframes[a];
-    const Pose T_w_b = carriage(k).pose(poseFromBlock(at(poseAt(a))), poseFromBlock(at(poseAt(b))).p);
+    const Pose T_w_b = carriages_[k].pose(poseFromBlock(at(poseAt(a))), poseFromBlock(at(poseAt(b))).p);
     Eigen::Map<PoseBlock>(at(poseAt(k))) = toBlock(T_w_b);
     Eigen::Map<MotionBlock> motion(at(motionAt(k)));
     motion << keyframe.v_w_b - anchor.v_w_b, keyframe.bias.gyro - anchor.bias.gyro,
@@ -70,10 +74,13 @@ void BatchProblem::settleBetween(std::size_t from, std::size_t to) {
     problem.SetParameterBlockConstant(at(poseAt(k)));
     problem.SetParameterBlockConstant(at(motionAt(k)));
   }
-  for (const auto& [k, factor] : imu_factors_)
-    if (k > from && k <= to)
-      problem.AddResidualBlock(factor.get(), nullptr, at(poseAt(k - 1)), at(motionAt(k - 1)), at(poseAt(k)),
-                               at(motionAt(k)), at(meanBiasAt(k - 1)));
+  std::vector<std::unique_ptr<ImuFactor>> imu_factors;
+  for (std::size_t k = from + 1; k <= to; ++k) {
+    imu_factors.push_back(imuFactor(k));
+    if (!imu_factors.back()) continue;
+    problem.AddResidualBlock(imu_factors.back().get(), nullptr, at(poseAt(k - 1)), at(motionAt(k - 1)), at(poseAt(k)),
+                             at(motionAt(k)), at(meanBiasAt(k - 1)));
+  }
   for (const CarriedResidual& r : carried_views_) {
     if (r.keyframe <= from || r.keyframe >= to) continue;
     hold(r.landmark, r.landmark < at(lines_at_) ? kPointSize : kLineSize);

@@ -35,13 +35,13 @@ template <class Target>
 class CarriedView final
     : public ceres::SizedCostFunction<Target::kRows, kPoseSize, kPoseSize, kCorrectionSize, Target::kSize, kPoseSize> {
  public:
-  /// `view` must outlive this.
+  /// `view` and `carriage` must outlive this.
   CarriedView(const ImageFactor<Target>& view, const Carriage& carriage) : view_(view), carriage_(carriage) {}
   bool Evaluate(double const* const* parameters, double* residuals, double** jacobians) const override;
 
  private:
   const ImageFactor<Target>& view_;
-  Carriage carriage_;
+  const Carriage& carriage_;
 };
 
 extern template class CarriedView<PointTarget>;

@@ -17,7 +17,8 @@ PointRecord recordOf(const RetiredPoint& retired) {
   point.p_w = retired.p_w;
   point.sigma_distance_m = retired.sigma_distance_m;
   point.views.reserve(retired.sightings.size());
-  for (const PointSighting& s : retired.sightings) point.views.push_back({s.frame, s.px.cast<float>(), true});
+  for (const PointSighting& s : retired.sightings)
+    point.views.push_back({static_cast<std::uint32_t>(s.frame), s.px.cast<float>(), true});
   return point;
 }
 

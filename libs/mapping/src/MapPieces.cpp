@@ -80,7 +80,7 @@ AppendedIds appendMaterial(MapMaterial other, MapMaterial& material) {
   for (PointRecord& point : other.points) {
     point.id += ids.points, point.track += ids.points;
     for (TrackId& track : point.joined) track += ids.points;
-    for (PointView& view : point.views) view.keyframe += ids.keyframes;
+    for (PointView& view : point.views) view.keyframe += static_cast<std::uint32_t>(ids.keyframes);
     material.points.push_back(std::move(point));
   }
   for (LineRecord& line : other.lines) {

@@ -23,7 +23,7 @@ MapMaterial materialOf(const MapParams& params, const LineMap& map) {
     record.id = record.track = point.id, record.known = true;
     record.p_w = point.p_w, record.sigma_distance_m = point.sigma_distance_m;
     for (const MapPointObservation& seen : point.observations)
-      record.views.push_back({seen.keyframe_id, seen.px.cast<float>(), true});
+      record.views.push_back({static_cast<std::uint32_t>(seen.keyframe_id), seen.px.cast<float>(), true});
     material.points.push_back(std::move(record));
   }
   const KeyframeCameras cameras(material);

@@ -50,7 +50,8 @@ inline PointRecord pointOf(const MapMaterial& material, TrackId id, const Eigen:
                            FrameId last = 3) {
   PointRecord point;
   point.id = id;
-  for (FrameId k = first; k <= last; ++k) point.views.push_back({k, pixelOf(material, k, p_w).cast<float>(), true});
+  for (FrameId k = first; k <= last; ++k)
+    point.views.push_back({static_cast<std::uint32_t>(k), pixelOf(material, k, p_w).cast<float>(), true});
   return point;
 }
 

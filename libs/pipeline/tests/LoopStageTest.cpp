@@ -70,7 +70,7 @@ class LoopStageTest : public testing::Test {
         points[id].id = id;
         points[id].known = true;
         points[id].p_w = p_w + Eigen::Vector3d(drift, 0, 0);
-        points[id].views.push_back({static_cast<FrameId>(t_ns), px.cast<float>(), true});
+        points[id].views.push_back({static_cast<std::uint32_t>(i), px.cast<float>(), true});
       }
       if (interrupted && i == 120) {
         WindowUpdate lost;
@@ -129,8 +129,7 @@ TEST_F(LoopStageTest, AnInterruptedFlightIsBroughtTogether) {
   params.min_separation_s = 14;
   LoopStage stage(rig_, params);
   MapMaterial material;
-  material.pieces = {{0, 0, kTurn_ns - 1, 0, 0, 0},
-                     {static_cast<FrameId>(kTurn_ns), kTurn_ns, 2 * kTurn_ns, 120, 1, 0}};
+  material.pieces = {{0, 0, kTurn_ns - 1, 0, 0, 0}, {120, kTurn_ns, 2 * kTurn_ns, 120, 1, 0}};
   const LoopResult loops = fly(stage, 1.5, material, true);
   EXPECT_TRUE(loops.drift_before_m.empty()) << "between pieces there is none";
   ASSERT_EQ(loops.places.alignments.size(), 1u);

@@ -92,8 +92,9 @@ std::vector<EdgeSegment> SegmentDetector::detect(const GrayImage& image) {
   std::vector<EdgeSegment> segments;
   for (const RefinedLine& edge : kept) {
     const SideLevels sides = sideLevels(d.camera, d.pyramid.image(), edge.line).value_or(SideLevels());
-    segments.push_back({d.camera.toImage(edge.line.start, edge.line.axis),
-                        d.camera.toImage(edge.line.end, edge.line.axis), edge.sigma_px, sides.dark, sides.bright});
+    segments.push_back({d.camera.toImage(edge.line.start, edge.line.axis).cast<float>(),
+                        d.camera.toImage(edge.line.end, edge.line.axis).cast<float>(),
+                        static_cast<float>(edge.sigma_px), sides.dark, sides.bright});
   }
   return segments;
 }

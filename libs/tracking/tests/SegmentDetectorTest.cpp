@@ -13,9 +13,9 @@ namespace {
 using namespace testing;
 
 /// How far the ends of `edge` are from the line through two pixels.
-double distanceTo(const EdgeSegment& edge, const Eigen::Vector2d& a, const Eigen::Vector2d& b) {
-  const Eigen::Vector2d d = (b - a).normalized(), n(-d.y(), d.x());
-  return std::max(std::abs(n.dot(edge.start_px - a)), std::abs(n.dot(edge.end_px - a)));
+double distanceTo(const EdgeSegment& edge, const Eigen::Vector2f& a, const Eigen::Vector2f& b) {
+  const Eigen::Vector2f d = (b - a).normalized(), n(-d.y(), d.x());
+  return static_cast<double>(std::max(std::abs(n.dot(edge.start_px - a)), std::abs(n.dot(edge.end_px - a))));
 }
 
 class SegmentDetectorTest : public ::testing::Test {
@@ -32,7 +32,7 @@ class SegmentDetectorTest : public ::testing::Test {
 
 TEST_F(SegmentDetectorTest, BothEdgesOfAStripWithTheBrightSideOnTheRight) {
   const auto found = detect(strips({{{-0.3, 0}, {0.3, 0}, 0.05}}));  // 180 px long, 30 px wide, in the middle
-  for (const double y : {145.0, 175.0}) {
+  for (const float y : {145.0f, 175.0f}) {
     const auto edge = std::find_if(found.begin(), found.end(), [&](const EdgeSegment& e) {
       return distanceTo(e, {0, y}, {480, y}) < 0.6;
     });
@@ -56,8 +56,8 @@ TEST_F(SegmentDetectorTest, NoEdgeTwiceAndLongerOnesFirst) {
   for (std::size_t i = 0; i < found.size(); ++i)
     for (std::size_t j = 0; j < i; ++j) {
       EXPECT_GE((found[j].end_px - found[j].start_px).norm(), (found[i].end_px - found[i].start_px).norm());
-      const Eigen::Vector2d middle = 0.5 * (found[i].start_px + found[i].end_px);
-      const bool beside = (middle - 0.5 * (found[j].start_px + found[j].end_px)).norm() < 10;
+      const Eigen::Vector2f middle = 0.5f * (found[i].start_px + found[i].end_px);
+      const bool beside = (middle - 0.5f * (found[j].start_px + found[j].end_px)).norm() < 10;
       EXPECT_FALSE(beside && distanceTo(found[i], found[j].start_px, found[j].end_px) < 1);
     }
 }

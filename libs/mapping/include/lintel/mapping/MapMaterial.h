@@ -17,7 +17,7 @@ namespace lintel {
 /// Where a keyframe saw a point. Views keep only what cannot be computed again, and that to 1e-4 px: an hour has
 /// millions of them.
 struct PointView {
-  FrameId keyframe = 0;
+  std::uint32_t keyframe = 0;                    ///< a FrameId: 2^32 frames are years
   Eigen::Vector2f px = Eigen::Vector2f::Zero();  ///< raw (distorted) pixels
   bool inlier = true;                            ///< agrees with the estimate
 };

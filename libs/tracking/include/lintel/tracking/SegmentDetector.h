@@ -14,8 +14,8 @@ namespace lintel {
 /// A straight edge in an image. Walking from start to end, with x to the right and y down, its brighter side is on the
 /// right hand.
 struct EdgeSegment {
-  Eigen::Vector2d start_px = Eigen::Vector2d::Zero(), end_px = Eigen::Vector2d::Zero();  ///< raw (distorted) pixels
-  double sigma_px = 1;         ///< standard deviation of an end's distance from the edge
+  Eigen::Vector2f start_px = Eigen::Vector2f::Zero(), end_px = Eigen::Vector2f::Zero();  ///< raw (distorted) pixels
+  float sigma_px = 1;          ///< standard deviation of an end's distance from the edge
   float dark = 0, bright = 0;  ///< mean grey levels of its sides
 };
 
