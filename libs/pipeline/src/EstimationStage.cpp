@@ -189,6 +189,8 @@ void EstimationStage::count(const WindowUpdate& update) {
     if (s.first_start_s < 0) s.first_start_s = t_s;
   } else if (update.status == EstimatorStatus::kInitializing && update.reason != "between window frames") {
     s.last_wait = update.reason;
+    ++s.frames_waiting;
+    s.frames_without_scale += update.reason == kScaleUnknown ? 1 : 0;
   }
   if (update.status == EstimatorStatus::kLost) {
     ++s.resets;

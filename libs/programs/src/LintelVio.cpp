@@ -25,6 +25,7 @@
 #include "lintel/pipeline/Odometry.h"
 #include "lintel/pipeline/Results.h"
 #include "lintel/pipeline/RunStatistics.h"
+#include "lintel/pipeline/SecondTry.h"
 #include "lintel/reporting/Progress.h"
 #include "lintel/sensing/GroundTruth.h"
 #include "lintel/tracking/TrackDrawing.h"
@@ -61,6 +62,7 @@ class LintelVio {
     costs_.once_ms.emplace_back("start of the program", processTimeMs());
     const auto start = std::chrono::steady_clock::now();
     OdometryResult result = process(*recording, configuration, stop);
+    if (configuration.refinement.enabled && lacksScale(result)) tryAgain(configuration, stop, result);
     const double wall_s = costs_.wall_s =
         std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
     if (result.statistics.frames == 0 && !result.error.empty()) throw RecordingError(result.error);
@@ -239,6 +241,24 @@ class LintelVio {
     checkpoint_->flush();
     if (!checkpoint_->fault().empty()) result.remarks.push_back(checkpoint_->fault());
     return result;
+  }
+
+  /// Once more, from a start that is less sure of the scale.
+  void tryAgain(const Configuration& configuration, const StopSignals& stop, OdometryResult& result) {
+    if (!quiet_) err_ << kName << ": no start knows the scale well: once more, from one that knows it less well\n";
+    RunSeries series;
+    std::swap(series, series_);
+    checkpoint_.emplace(output_, checkpoint_s_);
+    const auto recording = openRecording(input_, recording_params_);
+    OdometryResult second = process(*recording, secondTryOf(configuration), stop);
+    if (isBetter(second, result)) {
+      result = std::move(second);
+      result.map.configuration = writeConfiguration(configuration);
+      result.verdict = verdictOfSecondTry(result);
+    } else {
+      std::swap(series, series_);
+      result.cancelled = second.cancelled;
+    }
   }
 
   /// Where it outlasts the program being killed.

@@ -49,6 +49,8 @@ struct OdometryStatistics {
   std::vector<std::string> failures;                   ///< time and reason of each reset
   std::vector<Stretch> blind;                          ///< images showed too little: poses are the IMU's alone
   std::string last_wait;                               ///< what initialisation waited for last
+  std::size_t frames_waiting = 0;                      ///< window frames on which it waited
+  std::size_t frames_without_scale = 0;                ///< of these, those on which it was the scale alone
   StageClock decoding, tracking, estimation, mapping;  ///< a value a frame
   StageClock loops;                                    ///< a value a described frame, and one for the search
   StageClock edges;                                    ///< a value a keyframe: the search for edges in its image

@@ -1,0 +1,22 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "lintel/pipeline/Odometry.h"
+
+namespace lintel {
+
+/// Whether a run has poses for less than half of its frames because no start knew the scale well enough: the motion is
+/// too gentle for its IMU.
+bool lacksScale(const OdometryResult& result);
+
+/// For the same recording once more. A start may be less sure of the scale, and the refinement, which has the whole
+/// recording to find it, may move everything.
+Configuration secondTryOf(Configuration configuration);
+
+/// Whether the second try's result is the better one: it is refined, no check fails, and it has poses for more frames.
+bool isBetter(const OdometryResult& second, const OdometryResult& first);
+
+/// Why a second try's result is not to be trusted either.
+std::string verdictOfSecondTry(const OdometryResult& second);
+
+}  // namespace lintel
