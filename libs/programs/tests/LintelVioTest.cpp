@@ -401,6 +401,24 @@ TEST_F(LintelVioTest, ARangeTooShortForAPoseSaysWhatWasWaitedFor) {
   expectOneLine(r, "no pose was found (collecting frames)");
 }
 
+TEST_F(LintelVioTest, WhereNoStartKnowsTheScaleARefinedSecondTryIsWrittenAndNotTrusted) {
+  const std::string wanted = "estimator.initializer.max_scale_sigma=0.0002";
+  const ProgramRun r = run(recording(), "second_try", {"--set", wanted});
+  EXPECT_EQ(r.exit_code, 1);
+  expectOneLine(r, "not to be trusted: the motion hardly shows the scale");
+  const TrajectoryErrors errors =
+      evaluateTrajectory(readTrajectory(out("second_try") + "/trajectory_refined.tum"),
+                         readTrajectory(recording() + "/mav0/state_groundtruth_estimate0/data.csv"));
+  EXPECT_LT(errors.position_m.rmse, 0.05);
+  EXPECT_GT(errors.position_m.count, 60U) << "the frames of the start, too";
+  Configuration configuration;
+  readConfiguration(out("second_try") + "/config.yaml", configuration);
+  EXPECT_EQ(configuration.estimator.initializer.max_scale_sigma, 0.0002) << "what leads to this result";
+  const ProgramRun causal = run(recording(), "no_second_try", {"--set", wanted, "--no-refine"});
+  EXPECT_EQ(causal.exit_code, 1);
+  expectOneLine(causal, "no pose was found");
+}
+
 TEST_F(LintelVioTest, WrongCommandLinesAreUsage) {
   for (const std::vector<std::string>& arguments :
        std::vector<std::vector<std::string>>{{},
