@@ -14,7 +14,7 @@ class RowTimesTest : public testing::Test {
  protected:
   RowTimesTest() {
     MapMaterial& m = flight_.material;
-    m.rig.T_b_c = {expRotation({0.1, -0.2, 0.3f}), {0.03, 0.02, -0.01}};
+    m.rig.T_b_c = {expRotation({0.1, -0.2, 0.3}), {0.03, 0.02, -0.01}};
     for (RetiredKeyframe& k : m.keyframes) {
       k.T_w_b = poseAt(1e-9 * static_cast<double>(k.t_ns));
       k.v_w_b = v_w_;

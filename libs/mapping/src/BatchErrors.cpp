@@ -107,6 +107,7 @@ std::vector<CameraErrors> BatchProblem::drawErrors() {
 /// All residuals: what follows needs the memory.
 void BatchProblem::release() {
   problem_.reset();
+  carried_views_.clear();
   own_factors_.clear();
   point_factors_.clear();
   line_factors_.clear();

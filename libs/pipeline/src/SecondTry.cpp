@@ -11,6 +11,7 @@ namespace {
 constexpr double kEnough = 0.5;       // of the frames with a pose
 constexpr double kOften = 0.25;       // of the frames that wait for a start, those that wait for the scale
 constexpr double kScaleSigma = 0.15;  // of a start
+constexpr double kMovedShare = 1;     // of the way travelled, by which a keyframe may move
 
 }  // namespace
 
@@ -22,9 +23,10 @@ bool lacksScale(const OdometryResult& result) {
 }
 
 Configuration secondTryOf(Configuration configuration) {
-  double& sigma = configuration.estimator.initializer.max_scale_sigma;
+  double &sigma = configuration.estimator.initializer.max_scale_sigma,
+         &moved = configuration.refinement.max_moved_share;
   sigma = std::max(sigma, kScaleSigma);
-  configuration.refinement.max_moved_share = 1;
+  moved = std::max(moved, kMovedShare);
   return configuration;
 }
 
@@ -34,7 +36,7 @@ bool isBetter(const OdometryResult& second, const OdometryResult& first) {
 }
 
 std::string verdictOfSecondTry(const OdometryResult& second) {
-  char text[240];
+  char text[300];
   std::snprintf(
       text, sizeof text,
       "the motion hardly shows the scale: the refined trajectory and the map may be several per cent too "
