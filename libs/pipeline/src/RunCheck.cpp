@@ -19,7 +19,8 @@ constexpr double kLeastShareWithPose = 0.5;
 
 // How far the estimated calibration may go from the given one: some times what a rough calibration is wrong by (focal
 // length 2 %, mounting 3 degrees and some centimetres). Farther away it takes up errors that are not the camera's, or
-// the camera is another. The distortion may come from none given: it has no limit.
+// the camera is another. A moved centre turns the rays nearly as a turned mounting does. The distortion may come from
+// none given: it has no limit.
 constexpr double kLargestFocalChange = 0.05, kLargestTurn_rad = 0.12, kLargestMove_m = 0.2;
 
 // Squared misfits of the IMU between keyframes have nine degrees of freedom: a median of 8.3, or 25 times as much where
@@ -39,12 +40,15 @@ std::string calibrationFault(const Rig& given, const Rig& estimated) {
   const double focal = estimated.camera.meanFocal() / given.camera.meanFocal() - 1;
   const double turn_rad = given.T_b_c.q.angularDistance(estimated.T_b_c.q);
   const double move_m = (estimated.T_b_c.p - given.T_b_c.p).norm();
-  if (std::abs(focal) <= kLargestFocalChange && turn_rad <= kLargestTurn_rad && move_m <= kLargestMove_m) return {};
+  const double centre_px = std::hypot(estimated.camera.cx - given.camera.cx, estimated.camera.cy - given.camera.cy);
+  if (std::abs(focal) <= kLargestFocalChange && turn_rad <= kLargestTurn_rad && move_m <= kLargestMove_m &&
+      centre_px <= kLargestTurn_rad * given.camera.meanFocal())
+    return {};
   char text[200];
   std::snprintf(text, sizeof text,
-                "the estimate left the given calibration: focal length %+.0f %%, mounting turned by %.0f degrees and "
-                "moved by %.0f cm",
-                100 * focal, turn_rad * 57.29577951, 100 * move_m);
+                "the estimate left the given calibration: focal length %+.0f %%, centre moved by %.0f px, mounting "
+                "turned by %.0f degrees and moved by %.0f cm",
+                100 * focal, centre_px, turn_rad * 57.29577951, 100 * move_m);
   return text;
 }
 
@@ -178,7 +182,7 @@ std::string RunCheck::cause(const OdometryStatistics& s) const {
     return "the camera may accelerate too little to show the scale above the IMU's noise: start where it moves more "
            "strongly (--from), or look at the accelerometer (its sign: at rest it shows 9.8 m/s^2 upwards; unit)";
   return "camera and gyroscope turn together, so look at the accelerometer (its sign: at rest it shows 9.8 m/s^2 "
-         "upwards; axes, unit), the distance in T_BS, the focal length and the distortion";
+         "upwards; axes, unit), the distance in T_BS, the intrinsics and the distortion";
 }
 
 std::string RunCheck::verdict(const OdometryStatistics& s, const Rig& estimated) const {

@@ -113,6 +113,11 @@ TEST(RunCheck, ACalibrationThatTheEstimateLeft) {
   estimated = givenRig();
   estimated.T_b_c.p.y() = 0.3;
   EXPECT_NE(verdictOf(9.81, 0, 0, 1, estimated).find("moved by 30 cm"), std::string::npos);
+  estimated = givenRig();
+  estimated.camera.cx += 30;  // the middle of the image, given for a centre that nobody measured
+  EXPECT_EQ(verdictOf(9.81, 0, 0, 1, estimated), "");
+  estimated.camera.cy -= 52;
+  EXPECT_NE(verdictOf(9.81, 0, 0, 1, estimated).find("centre moved by 60 px"), std::string::npos);
 }
 
 TEST(RunCheck, ImagesThatContradictTheImu) {
