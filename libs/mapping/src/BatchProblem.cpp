@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "BatchProblem.h"
 
-#include <ceres/iteration_callback.h>
 #include <ceres/ordered_groups.h>
 #include <ceres/solver.h>
 
 #include <cmath>
 
+#include "SolverEnd.h"
 #include "lintel/estimator/StatePriors.h"
 #include "lintel/mapping/KeyframeCameras.h"
 
@@ -26,20 +26,6 @@ StateManifold* directionManifold() {
 
 constexpr double kPoseCoordinates = 6;
 constexpr double kOffsetLossWidth = 1;  // standard deviations: exposure times change at once, clocks slowly
-
-class IterationCallback : public ceres::IterationCallback {
- public:
-  IterationCallback(double least_gain, const std::function<bool(int)>& goOn) : least_gain_(least_gain), goOn_(goOn) {}
-  ceres::CallbackReturnType operator()(const ceres::IterationSummary& summary) override {
-    const double gain = summary.cost_change;
-    const bool ends = summary.iteration > 0 && summary.step_is_successful && gain >= 0 && gain < least_gain_;
-    return goOn_(summary.iteration) && !ends ? ceres::SOLVER_CONTINUE : ceres::SOLVER_TERMINATE_SUCCESSFULLY;
-  }
-
- private:
-  double least_gain_;
-  const std::function<bool(int)>& goOn_;
-};
 
 }  // namespace
 
@@ -203,13 +189,32 @@ BatchProblem::Summary BatchProblem::solve(int max_iterations, double least_gain,
   options.use_inner_iterations = true;
   options.inner_iteration_ordering = landmarks;
   options.logging_type = ceres::SILENT;
-  IterationCallback callback(kPoseCoordinates * least_gain * anchorCount(), goOn);
-  options.callbacks.push_back(&callback);
+  options.update_state_every_iteration = true;
+  SolverEnd end(
+      kPoseCoordinates * least_gain * anchorCount(), [this] { return wayOfAnchors(); }, goOn);
+  options.callbacks.push_back(&end);
   ceres::Solver::Summary summary;
   ceres::Solve(options, problem_.get(), &summary);
   settle();
   return {summary.IsSolutionUsable(), static_cast<int>(summary.iterations.size()),
           static_cast<std::size_t>(summary.num_residuals), summary.initial_cost, summary.final_cost};
+}
+
+Eigen::Matrix3Xd BatchProblem::wayOfAnchors() const {
+  std::vector<Eigen::Vector3d> steps;
+  std::size_t last = 0;  // the anchor before
+  bool led = false;      // by the IMU, from there on
+  for (std::size_t k = 0; k < material_.keyframes.size(); ++k) {
+    led = led && material_.keyframes[k].imu;
+    if (!isAnchor(k)) continue;
+    const auto p_w = [&](std::size_t i) { return Eigen::Vector3d::Map(values_.data() + poseAt(i)); };
+    if (led) steps.push_back(p_w(k) - p_w(last));
+    last = k;
+    led = true;
+  }
+  Eigen::Matrix3Xd way_w(3, steps.size());
+  for (std::size_t i = 0; i < steps.size(); ++i) way_w.col(static_cast<Eigen::Index>(i)) = steps[i];
+  return way_w;
 }
 
 void BatchProblem::writeBack() {

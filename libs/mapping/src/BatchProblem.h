@@ -48,10 +48,11 @@ class BatchProblem {
     double cost_before = 0, cost_after = 0;
   };
   /// Solves for anchors, calibration and landmarks; then for the keyframes between the anchors, all else held.
-  /// Ends when an iteration lowers the cost by less than `least_gain` for each coordinate of the anchors' poses, or
-  /// when `goOn`, called after every iteration with their number, says so. A cost is half of a chi-square: a gain of
-  /// 1/2 moves a coordinate by a standard deviation. Compared with the cost itself, drift between visits of one place
-  /// would not count on a long flight: it costs little beside the views of all landmarks.
+  /// Ends when an iteration lowers the cost by less than `least_gain` for each coordinate of the anchors' poses and
+  /// changes the scale by less than a thousandth, or when `goOn`, called after every iteration with their number, says
+  /// so. A cost is half of a chi-square: a gain of 1/2 moves a coordinate by a standard deviation. Compared with the
+  /// cost itself, drift between visits of one place would not count on a long flight: it costs little beside the views
+  /// of all landmarks.
   Summary solve(int max_iterations, double least_gain, const std::function<bool(int)>& goOn);
 
   /// Keyframes and calibration as solved, into the material. Landmarks are estimated anew by MapFitting.
@@ -91,6 +92,10 @@ class BatchProblem {
   void release();
   bool isAnchor(std::size_t k) const;
   double anchorCount() const;
+
+  /// From anchor to anchor where the IMU leads from one to the other, as the blocks have it [m], 3 x n.
+  Eigen::Matrix3Xd wayOfAnchors() const;
+
   void findCarriages();
   void carryAlong();
   void settle();

@@ -25,6 +25,7 @@ namespace {
 // of the cost, for each coordinate of a pose: smaller steps are not worth an iteration. Landmarks are chosen and
 // classified anew after every round but the last: those need not converge.
 constexpr double kFirstGain = 0.3, kLastGain = 0.04;
+constexpr double kUsualIterations = 12;  // of a round, at most; those for which the scale goes on are rare
 
 constexpr double kAccelerometerScale = 0.005;  // standard deviation of a calibrated one's: no residual shows it
 
@@ -277,7 +278,7 @@ RefinementReport BatchRefinement::adjust(MapMaterial& material, const Refinement
                         material.points.end());
 
   const auto goOn = [&](int round, int iteration) {
-    const double done = round + std::min(1.0, static_cast<double>(iteration) / params_.max_iterations);
+    const double done = round + std::min(1.0, iteration / std::min(kUsualIterations, 1.0 * params_.max_iterations));
     if (progress && !progress(done / params_.rounds) && done < params_.rounds) report.cancelled = true;
     return !report.cancelled;
   };

@@ -16,7 +16,7 @@ namespace lintel {
 struct RefinementParams {
   bool enabled = true;
   int rounds = 3;           ///< of: estimate and merge landmarks, adjust, reject outliers
-  int max_iterations = 12;  ///< of a round
+  int max_iterations = 25;  ///< of a round
   /// In all rounds but the last keyframes are adjusted that follow each other by so much; those between are carried by
   /// them, and their views count. 0: all are adjusted.
   double keyframe_interval_s = 0.3;
