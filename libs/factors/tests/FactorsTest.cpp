@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "TestFactors.h"
+#include "lintel/factors/AxesImuFactor.h"
 #include "lintel/factors/ImageObservations.h"
 #include "lintel/factors/ImuFactor.h"
 #include "lintel/factors/LineFactor.h"
@@ -15,6 +16,7 @@
 #include "lintel/factors/VanishingFactor.h"
 #include "lintel/geometry/Frames.h"
 #include "lintel/geometry/Rotation.h"
+#include "lintel/inertial/AccelerometerAxes.h"
 
 namespace lintel {
 namespace {
@@ -339,6 +341,8 @@ TEST(ImuFactor, CorrelatedNoiseDecaysTowardsTheMeanBias) {
   EXPECT_NEAR(r[12], 1, 1e-6);
 }
 
+const Eigen::Vector3d kMean_f(0.4, 0.1, 9.7);
+
 TEST(ImuFactor, Gradients) {
   ImuNoise noise;
   noise.accel_correlated = 0.03;
@@ -351,6 +355,30 @@ TEST(ImuFactor, Gradients) {
   const MeanBiasBlock mean(0.08, 0.02, 0.15);
   expectGradients(ImuFactor(pre), {&kPoseManifold, nullptr, &kPoseManifold, nullptr, nullptr},
                   {pose_i.data(), motion_i.data(), pose_j.data(), motion_j.data(), mean.data()}, 1e-5);
+  AxesBlock axes;
+  axes << 0.01, -0.02, 0, 0.05, -0.01, 0.03, 0, 0.02, 0.004;
+  expectGradients(AxesImuFactor(pre, kMean_f), {&kPoseManifold, nullptr, &kPoseManifold, nullptr, nullptr, nullptr},
+                  {pose_i.data(), motion_i.data(), pose_j.data(), motion_j.data(), mean.data(), axes.data()}, 1e-5);
+}
+
+TEST(AxesImuFactor, IsTheImuFactorOfCorrectedSamples) {
+  const auto pre = somePreintegration();
+  const PoseBlock pose_i = toBlock(Pose{expRotation({0.3, 0.1, -1}), {1, 2, 3}});
+  const PoseBlock pose_j = toBlock(Pose{expRotation({0.32, 0.13, -1.05}), {1.04, 2, 3.02}});
+  MotionBlock motion;
+  motion << 0.4, -0.2, 0.1, pre->bias().gyro, pre->bias().accel;
+  const MeanBiasBlock mean(0.08, 0.02, 0.15);
+  Eigen::Matrix<double, 3, 3, Eigen::RowMajor> A;
+  A << 0.01, -0.02, 0, 0.05, -0.01, 0.03, 0, 0.02, 0.004;
+  const double* blocks[] = {pose_i.data(), motion.data(), pose_j.data(), motion.data(), mean.data(), A.data()};
+  Eigen::Matrix<double, 15, 1> r, corrected;
+  const ImuFactor as_measured(pre), right(std::make_shared<Preintegration>(withAxes(*pre, {A, kMean_f})));
+  ASSERT_TRUE(AxesImuFactor(pre, kMean_f).Evaluate(blocks, r.data(), nullptr));
+  ASSERT_TRUE(right.Evaluate(blocks, corrected.data(), nullptr));
+  // of other weights: the covariance depends on the samples
+  r.head<9>() = as_measured.sqrtInformation().inverse() * r.head<9>();
+  corrected.head<9>() = right.sqrtInformation().inverse() * corrected.head<9>();
+  EXPECT_LT((r - corrected).norm(), 1e-9 * r.norm());
 }
 
 }  // namespace

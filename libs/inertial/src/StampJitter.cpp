@@ -11,10 +11,10 @@ namespace lintel {
 namespace {
 
 constexpr std::size_t kIntervals = 100, kLeastIntervals = 8;
-constexpr double kLeastRate = 0.05;  // [rad/s]: slower turns show little of the time
-constexpr double kLongest_s = 0.5;   // of an interval: in longer ones the gyroscope's errors count
-constexpr double kLeast_s = 0.0007;  // at 1 rad/s a third of a pixel at EuRoC's focal length, what tracks err by
-constexpr double kSignificant = 10;  // standard deviations that the variance has where all error is noise
+constexpr double kLeastRate = 0.05;        // [rad/s]: slower turns show little of the time
+constexpr double kLongest_s = 0.5;         // of an interval: in longer ones the gyroscope's errors count
+constexpr double kLeastJitter_s = 0.0007;  // at 1 rad/s a third of a pixel at EuRoC's focal length, what tracks err by
+constexpr double kSignificant = 10;        // standard deviations that the variance has where all error is noise
 constexpr double kLargest_s = 0.02;
 
 /// Angular rate, acceleration and velocity at one end of an interval: what the residuals change by with its time.
@@ -62,7 +62,7 @@ double StampJitter::sigma_s() const {
   const double variance = (along2 - across2) / rates2;
   // n squares of noise along and 2 n halves of those across, all of the same variance
   const double chance = std::sqrt(3.0 / static_cast<double>(intervals_.size())) * across2 / rates2;
-  if (variance < std::max(kLeast_s * kLeast_s, kSignificant * chance)) return 0;
+  if (variance < std::max(kLeastJitter_s * kLeastJitter_s, kSignificant * chance)) return 0;
   return std::min(std::sqrt(variance), kLargest_s);
 }
 

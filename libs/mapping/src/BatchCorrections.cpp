@@ -43,7 +43,7 @@ CorrectionBlock weightsOfTheSame(const CalibrationParams& p) {
 
 /// Each begins with an anchor, and with every piece another one: that may be of another recording, earlier or later.
 void BatchProblem::findStretches() {
-  const bool changes = offset_walk_s_ > 0 && estimator_.calibration.refine_time_offset;
+  const bool changes = refinement_.offset_walk_s > 0 && estimator_.calibration.refine_time_offset;
   const double stretch_s = std::max(kStretch_s, kAnchors * duration_s(material_.keyframes) / anchorCount());
   std::int64_t start_ns = 0;
   for (std::size_t k = 0; k < material_.keyframes.size(); ++k) {
@@ -73,7 +73,7 @@ void BatchProblem::addCorrectionChanges() {
     const std::int64_t dt_ns = material_.keyframes[k].t_ns - material_.keyframes[before].t_ns;
     const double dt_s = std::max(kStretch_s, std::abs(1e-9 * static_cast<double>(dt_ns)));
     CorrectionBlock walk = CorrectionBlock::Zero();
-    walk[kTimeOffsetAt] = 1 / (offset_walk_s_ * std::sqrt(dt_s));
+    walk[kTimeOffsetAt] = 1 / (refinement_.offset_walk_s * std::sqrt(dt_s));
     own_factors_.push_back(std::make_unique<BlockChange<kCorrectionSize>>(same));
     problem_->AddResidualBlock(own_factors_.back().get(), nullptr, at(correctionAt(before)), at(correctionAt(k)));
     own_factors_.push_back(std::make_unique<BlockChange<kCorrectionSize>>(walk));

@@ -67,6 +67,8 @@ std::vector<double*> BatchProblem::blocksOfErrors(const std::vector<std::size_t>
     blocks.push_back(at(meanBiasOf(i)));
     tiles.push_back(kMeanBiasSize);
   }
+  blocks.push_back(at(axes_at_));
+  tiles.push_back(kAxesSize);
   return blocks;
 }
 

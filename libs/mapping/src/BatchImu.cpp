@@ -21,13 +21,13 @@ void BatchProblem::countStamps(std::size_t from, std::size_t to, Preintegration&
 }
 
 /// From the keyframe before to this one, linearised at its biases in the material; none where no samples lead here.
-std::unique_ptr<ImuFactor> BatchProblem::imuFactor(std::size_t k) const {
+std::unique_ptr<AxesImuFactor> BatchProblem::imuFactor(std::size_t k) const {
   const RetiredKeyframe& keyframe = material_.keyframes[k];
   if (!keyframe.imu || keyframe.imu->dt_s() <= 0) return nullptr;
   auto imu = std::make_shared<Preintegration>(*keyframe.imu);
   imu->repropagate(material_.keyframes[k - 1].bias);
   countStamps(k - 1, k, *imu);
-  return std::make_unique<ImuFactor>(std::move(imu));
+  return std::make_unique<AxesImuFactor>(std::move(imu), material_.axes.mean_f);
 }
 
 void BatchProblem::addImu() {
@@ -45,9 +45,9 @@ void BatchProblem::addImu() {
     while (!isAnchor(from)) --from;
     whole->repropagate(material_.keyframes[from].bias);
     countStamps(from, k, *whole);
-    anchor_imu_factors_.push_back(std::make_unique<ImuFactor>(whole));
+    anchor_imu_factors_.push_back(std::make_unique<AxesImuFactor>(whole, material_.axes.mean_f));
     problem_->AddResidualBlock(anchor_imu_factors_.back().get(), nullptr, at(poseAt(from)), at(motionAt(from)),
-                               at(poseAt(k)), at(motionAt(k)), at(meanBiasAt(from)));
+                               at(poseAt(k)), at(motionAt(k)), at(meanBiasAt(from)), at(axes_at_));
     whole.reset();
   }
 }
@@ -56,11 +56,11 @@ double BatchProblem::imuError() const {
   double sum = 0;
   std::size_t count = 0;
   for (std::size_t k = 1; k < material_.keyframes.size(); ++k) {
-    const std::unique_ptr<ImuFactor> factor = imuFactor(k);
+    const std::unique_ptr<AxesImuFactor> factor = imuFactor(k);
     if (!factor) continue;
-    const double* blocks[] = {values_.data() + poseAt(k - 1), values_.data() + motionAt(k - 1),
-                              values_.data() + poseAt(k), values_.data() + motionAt(k),
-                              values_.data() + meanBiasAt(k - 1)};
+    const double* blocks[] = {values_.data() + poseAt(k - 1),     values_.data() + motionAt(k - 1),
+                              values_.data() + poseAt(k),         values_.data() + motionAt(k),
+                              values_.data() + meanBiasAt(k - 1), values_.data() + axes_at_};
     Eigen::Matrix<double, 15, 1> r;
     factor->Evaluate(blocks, r.data(), nullptr);
     sum += r.head<9>().squaredNorm();

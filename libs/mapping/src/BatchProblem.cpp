@@ -14,6 +14,8 @@ namespace lintel {
 
 namespace {
 
+using RowMajorMatrix3d = Eigen::Matrix<double, 3, 3, Eigen::RowMajor>;
+
 StateManifold* lineManifold() {
   static LineManifold manifold;
   return &manifold;
@@ -46,13 +48,13 @@ StateManifold* BatchProblem::poseManifold() {
 BatchProblem::BatchProblem(const Rig& calibrated, const EstimatorParams& estimator, MapMaterial& material,
                            const std::vector<Anchors>& anchors, const std::vector<bool>& use_point,
                            const std::vector<bool>& use_line, std::size_t most_views,
-                           const std::vector<ParallelLines>& groups, double offset_walk_s)
+                           const std::vector<ParallelLines>& groups, const RefinementParams& refinement)
     : calibrated_(calibrated),
       estimator_(estimator),
       material_(material),
       anchors_(anchors),
       most_views_(most_views),
-      offset_walk_s_(offset_walk_s),
+      refinement_(refinement),
       groups_(groups),
       point_loss_(estimator.factors.point_loss_width),
       line_loss_(estimator.factors.line_loss_width),
@@ -93,7 +95,8 @@ void BatchProblem::placeBlocks() {
   correction_at_ = extrinsics_at_ + kPoseSize;
   directions_at_ = correction_at_ + stretches() * kCorrectionSize;
   mean_biases_at_ = directions_at_ + groups_.size() * kDirectionSize;
-  keyframes_at_ = mean_biases_at_ + meanBiases() * kMeanBiasSize;
+  axes_at_ = mean_biases_at_ + meanBiases() * kMeanBiasSize;
+  keyframes_at_ = axes_at_ + kAxesSize;
   values_.resize(keyframes_at_ + material_.keyframes.size() * (kPoseSize + kMotionSize));
 
   for (std::size_t i = 0; i < points_.size(); ++i) {
@@ -118,6 +121,8 @@ void BatchProblem::placeBlocks() {
     problem_->AddParameterBlock(at(directions_at_ + g * kDirectionSize), kDirectionSize, directionManifold());
   }
   placeMeanBiases();
+  Eigen::Map<RowMajorMatrix3d>(at(axes_at_)) = material_.axes.A;
+  problem_->AddParameterBlock(at(axes_at_), kAxesSize);
   for (std::size_t k = 0; k < material_.keyframes.size(); ++k) {
     const RetiredKeyframe& keyframe = material_.keyframes[k];
     Eigen::Map<PoseBlock>(at(poseAt(k))) = toBlock(keyframe.T_w_b);
@@ -139,6 +144,7 @@ void BatchProblem::addPriors() {
   };
   addParts(makeExtrinsicsPriors(estimator_.calibration, calibrated_.T_b_c), extrinsics_at_);
   addParts(makeCorrectionPriors(estimator_.calibration), correction_at_);
+  addParts(makeAxesPriors(refinement_.axes_scale_sigma, refinement_.axes_angle_sigma_rad), axes_at_);
   addCorrectionChanges();
   addMeanBiasWalk();
   for (std::size_t k = 0; k < material_.keyframes.size(); ++k) {
@@ -163,6 +169,7 @@ BatchProblem::Summary BatchProblem::solve(int max_iterations, double least_gain,
   for (std::size_t i = 0; i < lines_.size(); ++i) landmarks->AddElementToGroup(at(lines_at_ + i * kLineSize), 0);
   auto ordering = std::make_shared<ceres::ParameterBlockOrdering>(*landmarks);
   ordering->AddElementToGroup(at(extrinsics_at_), 1);
+  ordering->AddElementToGroup(at(axes_at_), 1);
   for (std::size_t i = 0; i < stretches(); ++i) ordering->AddElementToGroup(at(correctionOf(i)), 1);
   for (std::size_t g = 0; g < groups_.size(); ++g)
     ordering->AddElementToGroup(at(directions_at_ + g * kDirectionSize), 1);
@@ -221,6 +228,7 @@ void BatchProblem::writeBack() {
   material_.rig.T_b_c = poseFromBlock(at(extrinsics_at_));
   material_.rig.T_b_c.q.normalize();
   material_.rig.camera = correctedCamera(calibrated_.camera, at(correction_at_));
+  material_.axes.A = Eigen::Map<RowMajorMatrix3d>(at(axes_at_));
   writeBackOffsets();
   for (std::size_t k = 0; k < material_.keyframes.size(); ++k) {
     RetiredKeyframe& keyframe = material_.keyframes[k];

@@ -12,7 +12,7 @@
 
 #include "CarriedView.h"
 #include "KeyframeClusters.h"
-#include "lintel/factors/ImuFactor.h"
+#include "lintel/factors/AxesImuFactor.h"
 #include "lintel/factors/LineFactor.h"
 #include "lintel/factors/PointFactor.h"
 #include "lintel/factors/StructuralFactor.h"
@@ -35,11 +35,10 @@ class BatchProblem {
  public:
   /// `use_point`, `use_line`: which landmarks take part, by place in the material; `most_views` of each have residuals.
   /// `groups` of parallel lines share a direction each. Keyframes that are not anchors are carried by theirs.
-  /// `offset_walk_s`: by how much the offset between the clocks changes within a second, 0 for never.
   BatchProblem(const Rig& calibrated, const EstimatorParams& estimator, MapMaterial& material,
                const std::vector<Anchors>& anchors, const std::vector<bool>& use_point,
                const std::vector<bool>& use_line, std::size_t most_views, const std::vector<ParallelLines>& groups,
-               double offset_walk_s);
+               const RefinementParams& refinement);
 
   struct Summary {
     bool usable = false;
@@ -76,7 +75,7 @@ class BatchProblem {
   bool beginsWorld(FrameId keyframe) const;
   void countStamps(std::size_t from, std::size_t to, Preintegration& imu) const;
   void addImu();
-  std::unique_ptr<ImuFactor> imuFactor(std::size_t k) const;
+  std::unique_ptr<AxesImuFactor> imuFactor(std::size_t k) const;
   void findMeanBiases();
   void placeMeanBiases();
   void addMeanBiasWalk();
@@ -128,7 +127,7 @@ class BatchProblem {
   const std::vector<Anchors> anchors_;
   std::vector<Carriage> carriages_;  // by place: how a keyframe hangs on its anchors; that of an anchor says nothing
   std::size_t most_views_;
-  double offset_walk_s_;
+  const RefinementParams& refinement_;
   std::vector<std::size_t> points_, lines_;  // places in the material
   std::vector<ParallelLines> groups_;
   std::vector<std::int64_t> keyframe_places_;  // by id
@@ -137,12 +136,12 @@ class BatchProblem {
   std::vector<FrameMotion> motions_;           // by place
   std::vector<double> values_;
   std::size_t points_at_ = 0, lines_at_ = 0, extrinsics_at_ = 0, correction_at_ = 0, directions_at_ = 0,
-              mean_biases_at_ = 0, keyframes_at_ = 0;
+              mean_biases_at_ = 0, axes_at_ = 0, keyframes_at_ = 0;
 
   ceres::CauchyLoss point_loss_, line_loss_, calibration_loss_, structural_loss_, offset_loss_;
   std::deque<PointFactor> point_factors_;
   std::deque<LineFactor> line_factors_;
-  std::vector<std::unique_ptr<ImuFactor>> anchor_imu_factors_;  // from anchor to anchor
+  std::vector<std::unique_ptr<AxesImuFactor>> anchor_imu_factors_;  // from anchor to anchor
   std::vector<std::size_t> landmark_residuals_;  // the first residual block of each point, of each line; then the end
   std::vector<CarriedResidual> carried_views_;
   std::vector<std::unique_ptr<ceres::CostFunction>> own_factors_;  // the others

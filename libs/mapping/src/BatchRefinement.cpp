@@ -16,6 +16,7 @@
 #include "lintel/core/Quantiles.h"
 #include "lintel/estimator/StatePriors.h"
 #include "lintel/geometry/Rotation.h"
+#include "lintel/inertial/AccelerometerAxes.h"
 #include "lintel/mapping/MapBuilder.h"
 
 namespace lintel {
@@ -140,6 +141,25 @@ bool isFinite(const MapMaterial& material) {
          });
 }
 
+/// The keyframes' samples as an accelerometer with right axes would have measured them.
+void correctSamples(MapMaterial& material) {
+  for (RetiredKeyframe& keyframe : material.keyframes)
+    if (keyframe.imu) keyframe.imu = std::make_shared<Preintegration>(withAxes(*keyframe.imu, material.axes));
+  material.axes = {};
+}
+
+/// Of the keyframes' samples.
+Eigen::Vector3d meanSpecificForce(const std::vector<RetiredKeyframe>& keyframes) {
+  Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+  std::size_t count = 0;
+  for (const RetiredKeyframe& keyframe : keyframes) {
+    if (!keyframe.imu) continue;
+    for (const ImuSample& sample : keyframe.imu->samples()) sum += sample.accel;
+    count += keyframe.imu->samples().size();
+  }
+  return count == 0 ? sum : sum / static_cast<double>(count);
+}
+
 template <class... Args>
 std::string text(const char* format, Args... args) {
   char buffer[256];
@@ -198,6 +218,7 @@ RefinementReport BatchRefinement::refine(MapMaterial& material, const Refinement
     }
   }
   if (report.accepted) {
+    correctSamples(refined);
     refined.trajectory = refinedTrajectory(material, refined.keyframes);
     material = std::move(refined);
   } else {
@@ -262,7 +283,7 @@ std::vector<CameraErrors> BatchRefinement::errorsOf(MapMaterial& material) const
   const Used used = usedOf(material);
   BatchProblem problem(calibrated_, estimator_, material,
                        fewAnchors(material.keyframes, params_.most_keyframes, kInterval_s), used.points, used.lines,
-                       viewsEach(material, used), {}, params_.offset_walk_s);
+                       viewsEach(material, used), {}, params_);
   return problem.drawErrors();
 }
 
@@ -270,6 +291,7 @@ RefinementReport BatchRefinement::adjust(MapMaterial& material, const Refinement
                                          const std::vector<PointJoin>& joins) const {
   RefinementReport report;
   const MapMaterial before = camerasOf(material);
+  material.axes.mean_f = meanSpecificForce(material.keyframes);
   std::vector<PointRecord> held_out;
   for (const PointRecord& point : material.points)
     if (isHeldOut(point, params_.held_out_share)) held_out.push_back(point);
@@ -305,7 +327,7 @@ RefinementReport BatchRefinement::adjust(MapMaterial& material, const Refinement
         last ? fewAnchors(material.keyframes, params_.most_keyframes)
              : fewAnchors(material.keyframes, (params_.most_keyframes + 1) / 2, params_.keyframe_interval_s);
     BatchProblem problem(calibrated_, estimator_, material, anchors, used.points, used.lines, viewsEach(material, used),
-                         groups, params_.offset_walk_s);
+                         groups, params_);
     if (round == 0) report.imu_before = problem.imuError();
     const auto summary = problem.solve(params_.max_iterations, last ? kLastGain : kFirstGain,
                                        [&](int iteration) { return goOn(round, iteration); });
@@ -343,6 +365,8 @@ RefinementReport BatchRefinement::adjust(MapMaterial& material, const Refinement
             [](const PointRecord& a, const PointRecord& b) { return a.id < b.id; });
   prepareMaterial(map_, material);
   material.camera_errors = errorsOf(material);
+  const Eigen::Matrix3d I = Eigen::Matrix3d::Identity();
+  report.axes = (I + material.axes.A) * (I + calibrated_.accelerometer_axes) - I;
   report.verdict =
       text("refined: keyframes moved by up to %.3f m; points without part in it fit to %.2f px (before %.2f)",
            report.moved_m, report.held_out_after_px, report.held_out_before_px);

@@ -65,6 +65,7 @@ void BatchProblem::settleBetween(std::size_t from, std::size_t to) {
     problem.SetParameterBlockConstant(block);
   };
   hold(at(extrinsics_at_), kPoseSize);
+  hold(at(axes_at_), kAxesSize);
   for (std::size_t k = from; k <= to; ++k) {
     hold(at(correctionAt(k)), kCorrectionSize);
     hold(at(meanBiasAt(k)), kMeanBiasSize);
@@ -74,12 +75,12 @@ void BatchProblem::settleBetween(std::size_t from, std::size_t to) {
     problem.SetParameterBlockConstant(at(poseAt(k)));
     problem.SetParameterBlockConstant(at(motionAt(k)));
   }
-  std::vector<std::unique_ptr<ImuFactor>> imu_factors;
+  std::vector<std::unique_ptr<AxesImuFactor>> imu_factors;
   for (std::size_t k = from + 1; k <= to; ++k) {
     imu_factors.push_back(imuFactor(k));
     if (!imu_factors.back()) continue;
     problem.AddResidualBlock(imu_factors.back().get(), nullptr, at(poseAt(k - 1)), at(motionAt(k - 1)), at(poseAt(k)),
-                             at(motionAt(k)), at(meanBiasAt(k - 1)));
+                             at(motionAt(k)), at(meanBiasAt(k - 1)), at(axes_at_));
   }
   for (const CarriedResidual& r : carried_views_) {
     if (r.keyframe <= from || r.keyframe >= to) continue;

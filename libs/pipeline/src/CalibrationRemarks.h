@@ -5,12 +5,17 @@
 
 #include "lintel/core/Rig.h"
 #include "lintel/estimator/Estimator.h"
+#include "lintel/mapping/BatchRefinement.h"
 
 namespace lintel {
 
 /// What a run found about the shutter that the calibration does not say: rows that were exposed one after the other
 /// where none is given, or a readout that is another. Empty: nothing.
 std::string readoutRemark(const Rig& given, const CalibrationEstimate& estimate);
+
+/// What a refinement found about the accelerometer's axes: that they are wrong by more than those of calibrated
+/// sensors. Empty: nothing.
+std::string axesRemark(const Rig& given, const RefinementReport& refinement);
 
 /// What it found about the images' stamps: that they are off, each by its own amount. Empty: nothing.
 std::string stampRemark(const CalibrationEstimate& estimate);

@@ -156,6 +156,8 @@ OdometryResult runOdometry(Recording& recording, const Configuration& configurat
     result.remarks.push_back("noise of the IMU: " + noise);
   if (const std::string readout = readoutRemark(recording.rig(), result.window_calibration); !readout.empty())
     result.remarks.push_back(readout);
+  if (const std::string axes = axesRemark(recording.rig(), result.refinement); !axes.empty())
+    result.remarks.push_back(axes);
   if (const std::string stamps = stampRemark(result.window_calibration); !stamps.empty())
     result.remarks.push_back(stamps);
   result.evidence = check.evidence();

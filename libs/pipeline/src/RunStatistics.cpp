@@ -99,6 +99,13 @@ Json loopsJson(const OdometryResult& result) {
           {"median_drift_m", {median(loops.drift_before_m), median(loops.drift_after_m)}}};
 }
 
+/// Row by row.
+Json axesJson(const Eigen::Matrix3d& A) {
+  Json rows = Json::array();
+  for (int row = 0; row < 3; ++row) rows.push_back({A(row, 0), A(row, 1), A(row, 2)});
+  return rows;
+}
+
 Json refinementJson(const OdometryResult& result) {
   const RefinementReport& r = result.refinement;
   return {{"accepted", r.accepted},
@@ -115,6 +122,7 @@ Json refinementJson(const OdometryResult& result) {
           {"moved_m", r.moved_m},
           {"turned_rad", r.turned_rad},
           {"scale_sigma", r.scale_sigma},
+          {"accelerometer_axes", axesJson(r.axes)},
           {"time_offset_change_s", {r.least_offset_s, r.most_offset_s}}};
 }
 

@@ -3,6 +3,7 @@
 
 #include "CalibrationForms.h"
 #include "CanonicalPose.h"
+#include "ExactText.h"
 
 namespace lintel {
 namespace {
@@ -76,6 +77,7 @@ CameraCalibration vinsCamera(const YamlFile& main, const std::string& number) {
 void readVinsForm(const YamlFile& file, Calibration& calibration) {
   if (calibration.form.empty()) calibration.form = "VINS";
   if (file.has("acc_n")) calibration.imu_noise = vinsNoise(file);
+  if (file.has("acc_n")) calibration.accelerometer_axes = accelerometerAxes(file);
   calibration.imu_topic = file.get<std::string>("imu_topic", calibration.imu_topic);
   if (file.has("projection_parameters")) addCamera(vinsCamera(file, ""), calibration);
   for (int i = 0; file.has("cam" + std::to_string(i) + "_calib"); ++i)
@@ -106,6 +108,27 @@ void readOpenCvForm(const YamlFile& file, Calibration& calibration) {
 std::optional<double> lineDelay_s(const YamlFile& file) {
   if (!file.has("line_delay_s")) return std::nullopt;
   return checkedLineDelay_s(file.finite("line_delay_s"), file.where("line_delay_s"));
+}
+
+std::optional<Eigen::Matrix3d> accelerometerAxes(const YamlFile& file) {
+  if (!file.has("accelerometer_axes")) return std::nullopt;
+  return checkedAxes(file.numbers("accelerometer_axes"), file.where("accelerometer_axes"));
+}
+
+Eigen::Matrix3d checkedAxes(const std::vector<double>& values, const std::string& where) {
+  constexpr double kMost = 0.3;  // 17 degrees, or a third of a scale: beyond it the unit or the mounting is wrong
+  if (values.size() != 9) throw RecordingError(where + " needs 9 values, row by row");
+  for (const double value : values)
+    if (!(std::abs(value) <= kMost))
+      throw RecordingError(where + " must be errors of scales and directions, each at most 0.3, zero for right axes");
+  return Eigen::Map<const Eigen::Matrix<double, 3, 3, Eigen::RowMajor>>(values.data());
+}
+
+std::string axesText(const Eigen::Matrix3d& axes) {
+  std::string text;
+  for (int row = 0; row < 3; ++row)
+    for (int column = 0; column < 3; ++column) text += (text.empty() ? "[" : ", ") + exactText(axes(row, column));
+  return text + "]";
 }
 
 double checkedLineDelay_s(double line_delay_s, const std::string& where) {

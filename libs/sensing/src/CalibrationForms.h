@@ -2,6 +2,7 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include "CameraModel.h"
 #include "YamlFile.h"
@@ -28,5 +29,12 @@ void readOpenCvForm(const YamlFile& file, Calibration& calibration);
 std::optional<double> lineDelay_s(const YamlFile& file);
 /// Throws RecordingError naming `where` unless it is one that a sensor may have.
 double checkedLineDelay_s(double line_delay_s, const std::string& where);
+
+/// `accelerometer_axes` of an IMU (Rig.h), if given.
+std::optional<Eigen::Matrix3d> accelerometerAxes(const YamlFile& file);
+/// Of nine numbers, row by row.
+Eigen::Matrix3d checkedAxes(const std::vector<double>& values, const std::string& where);
+/// As a list in YAML.
+std::string axesText(const Eigen::Matrix3d& axes);
 
 }  // namespace lintel

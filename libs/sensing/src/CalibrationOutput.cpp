@@ -4,6 +4,7 @@
 #include <utility>
 #include <vector>
 
+#include "CalibrationForms.h"
 #include "ExactText.h"
 #include "lintel/geometry/LensNames.h"
 #include "lintel/sensing/Calibration.h"
@@ -34,6 +35,11 @@ Eigen::Matrix4d matrixOf(const Pose& pose) {
 
 std::string list(const std::vector<double>& values) {
   return list(Eigen::Map<const Eigen::RowVectorXd>(values.data(), static_cast<Eigen::Index>(values.size())));
+}
+
+/// Empty for right axes.
+std::string axesLine(const Rig& rig) {
+  return rig.accelerometer_axes.isZero(0) ? "" : "accelerometer_axes: " + axesText(rig.accelerometer_axes) + "\n";
 }
 
 [[noreturn]] void refuseLens(const Camera& camera, const char* form) {
@@ -96,7 +102,8 @@ std::string kalibrForm(const Rig& rig, double time_shift_s) {
   text += "\n  gyroscope_noise_density: " + exactText(rig.imu_noise.gyro_noise);
   text += "\n  gyroscope_random_walk: " + exactText(rig.imu_noise.gyro_walk);
   text += "\n  accelerometer_noise_density: " + exactText(rig.imu_noise.accel_noise);
-  return text + "\n  accelerometer_random_walk: " + exactText(rig.imu_noise.accel_walk) + "\n";
+  text += "\n  accelerometer_random_walk: " + exactText(rig.imu_noise.accel_walk) + "\n";
+  return rig.accelerometer_axes.isZero(0) ? text : text + "  " + axesLine(rig);
 }
 
 std::string matrixOfOpenCv(const std::string& key, const Eigen::MatrixXd& matrix) {
@@ -116,7 +123,8 @@ std::string vinsForm(const Rig& rig, double time_shift_s) {
   text += matrixOfOpenCv("extrinsicTranslation", rig.T_b_c.p);
   text += "acc_n: " + exactText(rig.imu_noise.accel_noise * from_density) +
           "\ngyr_n: " + exactText(rig.imu_noise.gyro_noise * from_density) +
-          "\nacc_w: " + exactText(rig.imu_noise.accel_walk) + "\ngyr_w: " + exactText(rig.imu_noise.gyro_walk) + "\n";
+          "\nacc_w: " + exactText(rig.imu_noise.accel_walk) + "\ngyr_w: " + exactText(rig.imu_noise.gyro_walk) + "\n" +
+          axesLine(rig);
   return text + "td: " + exactText(time_shift_s) + "\n";
 }
 

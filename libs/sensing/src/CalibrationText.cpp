@@ -119,6 +119,9 @@ std::string rigInWords(const Rig& rig, double time_shift_s) {
        << rounded(rig.imu_noise.gyro_walk, 4) << " rad/s^2/sqrt(Hz)\n"
        << "  accelerometer: noise " << rounded(rig.imu_noise.accel_noise, 4) << " m/s^2/sqrt(Hz), random walk "
        << rounded(rig.imu_noise.accel_walk, 4) << " m/s^3/sqrt(Hz)\n";
+  if (!rig.accelerometer_axes.isZero(0))
+    text << "  its axes are wrong by up to " << rounded(100 * rig.accelerometer_axes.cwiseAbs().maxCoeff(), 2)
+         << " %, which its samples are corrected for\n";
   return text.str();
 }
 

@@ -177,6 +177,7 @@ TEST_F(CalibrationTest, ARigIsWrittenAndReadBack) {
   rig.imu_noise = {1e-4 / 3, 2e-5, 3e-3 / 7, 4e-4};
   rig.camera_rate_hz = 30;
   rig.imu_rate_hz = 400;
+  rig.accelerometer_axes << 0.001, 0.02, 0, -0.05, 1.0 / 300, 0.03, 0, 0.007, -0.002;
   for (const std::string form : {"kalibr", "vins"}) {
     SCOPED_TRACE(form);
     const Calibration read = readCalibration({write(form + ".yaml", writeCalibration(rig, -0.0125, form))});
@@ -188,7 +189,10 @@ TEST_F(CalibrationTest, ARigIsWrittenAndReadBack) {
     EXPECT_EQ(camera.T_b_c->p, rig.T_b_c.p);
     EXPECT_NEAR(read.imu_noise->gyro_noise, rig.imu_noise.gyro_noise, 1e-18);
     EXPECT_NEAR(read.imu_noise->accel_walk, rig.imu_noise.accel_walk, 1e-18);
+    ASSERT_TRUE(read.accelerometer_axes);
+    EXPECT_EQ(*read.accelerometer_axes, rig.accelerometer_axes);
   }
+  EXPECT_THAT(rigInWords(rig), HasSubstr("its axes are wrong by up to 5 %"));
 }
 
 TEST(RigDoubts, NameWhatIsStrange) {

@@ -103,6 +103,13 @@ TEST_F(RawlogRecordingTest, AnImuPoseOtherThanIdentityGivesTheSame) {
   expectSameAsFolder();
 }
 
+TEST_F(RawlogRecordingTest, AxesOfTheAccelerometerGiveTheSame) {
+  replaceInFile(root_ + "/mav0/imu0/sensor.yaml",
+                "rate_hz:", "accelerometer_axes: [0.01, 0.02, 0, -0.05, 0, 0.03, 0, 0.007, -0.02]\nrate_hz:");
+  convert();
+  expectSameAsFolder();
+}
+
 TEST_F(RawlogRecordingTest, SensorsOutOfStepWithEachOtherGiveTheSame) {
   convert();
   edit(rawlog_, [](auto& observations) {  // images 0.2 s late in the file, as drivers deliver them

@@ -181,6 +181,7 @@ void expectSameRig(const Rig& a, const Rig& b) {
                                n.accel_walk};
   };
   EXPECT_EQ(numbers(a), numbers(b));
+  EXPECT_EQ(a.accelerometer_axes, b.accelerometer_axes);
 }
 
 }  // namespace lintel::test

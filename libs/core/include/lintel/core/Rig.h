@@ -31,6 +31,9 @@ struct Rig {
   double camera_rate_hz = 20;
   double line_delay_s = 0;  ///< rolling shutter: from row to row; a frame's time is that of the middle row
   ImuNoise imu_noise;
+  /// What the accelerometer's axes are wrong by, a matrix A: where f is measured the specific force is f + A f, less
+  /// the bias. Recordings hand on corrected samples.
+  Eigen::Matrix3d accelerometer_axes = Eigen::Matrix3d::Zero();
   double imu_rate_hz = 200;
   double gravity_m_s2 = kGravity;         ///< where the recording was made
   std::shared_ptr<const GrayImage> mask;  ///< of the camera's size, black where images are not used; null: nowhere

@@ -27,6 +27,11 @@ class ImuFactor final
   explicit ImuFactor(std::shared_ptr<const Preintegration> preintegration);
   bool Evaluate(double const* const* parameters, double* residuals, double** jacobians) const override;
 
+  const Preintegration& preintegration() const { return *preintegration_; }
+
+  /// W of the residuals W (r_theta, r_v, r_p).
+  const Eigen::Matrix<double, 9, 9>& sqrtInformation() const { return sqrt_information_; }
+
  private:
   std::shared_ptr<const Preintegration> preintegration_;
   Eigen::Matrix<double, 9, 9> sqrt_information_;

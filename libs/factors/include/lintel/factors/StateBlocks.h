@@ -21,6 +21,7 @@ namespace lintel {
 //                       with B = tangentBasis(d)
 //   correction 8        what the calibrated camera is wrong by: fx fy cx cy [px], k1 k2, readout [s], time offset [s]
 //   mean bias  3        what bias_accel is without correlated noise [m/s^2] (ImuNoise)
+//   axes       9        what the accelerometer's axes are wrong by, row by row (AccelerometerAxes.h)
 constexpr int kPoseSize = 7, kPoseTangent = 6;
 constexpr int kMotionSize = 9, kVelocityAt = 0, kBiasGyroAt = 3, kBiasAccelAt = 6;
 constexpr int kLineSize = 5, kLineTangent = 4;
@@ -28,6 +29,7 @@ constexpr int kPointSize = 4, kPointTangent = 3;
 constexpr int kDirectionSize = 3, kDirectionTangent = 2;
 constexpr int kCorrectionSize = 8, kReadoutAt = 6, kTimeOffsetAt = 7;
 constexpr int kMeanBiasSize = 3;
+constexpr int kAxesSize = 9;
 
 /// The part of a correction that a sighting depends on by itself: all but the time offset, which moves the camera of a
 /// whole image.
@@ -39,6 +41,7 @@ using PointBlock = Eigen::Matrix<double, kPointSize, 1>;
 using LineBlock = Eigen::Matrix<double, kLineSize, 1>;
 using DirectionBlock = Eigen::Matrix<double, kDirectionSize, 1>;
 using MeanBiasBlock = Eigen::Matrix<double, kMeanBiasSize, 1>;
+using AxesBlock = Eigen::Matrix<double, kAxesSize, 1>;
 using CorrectionBlock = Eigen::Matrix<double, kCorrectionSize, 1>;
 
 /// The part of a correction that changes the ray of a pixel; readout and time offset move the pose (FrameMotion.h).

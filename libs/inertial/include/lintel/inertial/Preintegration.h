@@ -69,6 +69,7 @@ class Preintegration {
   const Matrix96& biasJacobian() const { return bias_jacobian_; }
   Matrix9 covariance() const { return covariance_ + stamp_covariance_ + correlatedCovariance(); }
   double stampSigma() const { return stamp_sigma_s_; }  ///< [s]
+  const Matrix9& stampCovariance() const { return stamp_covariance_; }
 
   /// Deltas corrected to first order for biases other than bias() [Forster2017, eq. 44].
   struct Corrected {

@@ -39,6 +39,9 @@ struct RefinementParams {
   /// By how much the offset between the clocks of camera and IMU changes within a second, standard deviation; it may
   /// jump by more. 0: never.
   double offset_walk_s = 3e-4;
+  // what the axes of a calibrated accelerometer are wrong by, standard deviations; others may be wrong by much more
+  double axes_scale_sigma = 0.002;
+  double axes_angle_sigma_rad = 0.005;
   // acceptance
   double max_moved_share = 0.05;  ///< keyframes may move by this share of the way travelled, and
   double max_moved_m = 0.30;      ///< this much more
@@ -65,6 +68,8 @@ struct RefinementParams {
     field("join_last_px", join_last_px, ReferencePixels{0.1, 1000});
     field("held_out_share", held_out_share, Range{0, 0.5});
     field("offset_walk_s", offset_walk_s, Range{0, 1});
+    field("axes_scale_sigma", axes_scale_sigma, Range{1e-9, 1});
+    field("axes_angle_sigma_rad", axes_angle_sigma_rad, Range{1e-9, 1});
     field("max_moved_share", max_moved_share, Range{0, 10});
     field("max_moved_m", max_moved_m, Range{0, 1000});
     field("max_turned_rad", max_turned_rad, Range{0, 3.2});
@@ -84,9 +89,10 @@ struct RefinementReport {
   double held_out_before_px = 0, held_out_after_px = 0;  ///< median error of points left out of it
   std::size_t held_out = 0;                              ///< how many these are
   double held_out_growth = 0;  ///< of their errors, in standard deviations of its mean; 0 with fewer than three
-  double imu_before = 0, imu_after = 0;          ///< RMS, standard deviations
-  double moved_m = 0, turned_rad = 0;            ///< most, of a keyframe
-  double least_offset_s = 0, most_offset_s = 0;  ///< of the keyframes, between the clocks, beside their mean
+  double imu_before = 0, imu_after = 0;            ///< RMS, standard deviations
+  double moved_m = 0, turned_rad = 0;              ///< most, of a keyframe
+  double least_offset_s = 0, most_offset_s = 0;    ///< of the keyframes, between the clocks, beside their mean
+  Eigen::Matrix3d axes = Eigen::Matrix3d::Zero();  ///< Rig::accelerometer_axes as they should be
   double scale_sigma = 0;  ///< relative standard deviation of the size of everything: by what the residuals leave open,
                            ///< and by the accelerometer's own scale
 };
