@@ -12,10 +12,10 @@
 #include "KeyframeClusters.h"
 #include "LineGroups.h"
 #include "MapFitting.h"
+#include "TrajectoryChange.h"
 #include "lintel/core/FreeMemory.h"
 #include "lintel/core/Quantiles.h"
 #include "lintel/estimator/StatePriors.h"
-#include "lintel/geometry/Rotation.h"
 #include "lintel/inertial/AccelerometerAxes.h"
 #include "lintel/mapping/MapBuilder.h"
 
@@ -106,16 +106,14 @@ bool fitsWorse(const RefinementReport& report) {
   return report.held_out_after_px > 1.02 * report.held_out_before_px + 0.01 && report.held_out_growth > 2;
 }
 
-/// How far keyframes and clocks moved; every run about its own first keyframe, which is held.
 void measureChange(const MapMaterial& before, const MapMaterial& after, RefinementReport& report, double& travelled_m) {
-  travelled_m = 0;
-  for (std::size_t k = 0; k < before.keyframes.size(); ++k) {
-    const Pose &T0 = before.keyframes[k].T_w_b, &T1 = after.keyframes[k].T_w_b;
-    if (k > 0 && before.keyframes[k].imu) travelled_m += (T0.p - before.keyframes[k - 1].T_w_b.p).norm();
-    report.moved_m = std::max(report.moved_m, (T1.p - T0.p).norm());
-    report.least_offset_s = std::min(report.least_offset_s, after.keyframes[k].offset_change_s);
-    report.most_offset_s = std::max(report.most_offset_s, after.keyframes[k].offset_change_s);
-    report.turned_rad = std::max(report.turned_rad, logRotation(T0.q.conjugate() * T1.q).norm());
+  const TrajectoryChange change = trajectoryChange(before.keyframes, after.keyframes, after.pieces);
+  report.moved_m = change.moved_m;
+  report.turned_rad = change.turned_rad;
+  travelled_m = change.travelled_m;
+  for (const RetiredKeyframe& k : after.keyframes) {
+    report.least_offset_s = std::min(report.least_offset_s, k.offset_change_s);
+    report.most_offset_s = std::max(report.most_offset_s, k.offset_change_s);
   }
 }
 

@@ -11,7 +11,6 @@ namespace {
 constexpr double kEnough = 0.5;       // of the frames with a pose
 constexpr double kOften = 0.25;       // of the frames that wait for a start, those that wait for the scale
 constexpr double kScaleSigma = 0.15;  // of a start
-constexpr double kMovedShare = 1;     // of the way travelled, by which a keyframe may move
 
 }  // namespace
 
@@ -23,10 +22,8 @@ bool lacksScale(const OdometryResult& result) {
 }
 
 Configuration secondTryOf(Configuration configuration) {
-  double &sigma = configuration.estimator.initializer.max_scale_sigma,
-         &moved = configuration.refinement.max_moved_share;
+  double& sigma = configuration.estimator.initializer.max_scale_sigma;
   sigma = std::max(sigma, kScaleSigma);
-  moved = std::max(moved, kMovedShare);
   return configuration;
 }
 

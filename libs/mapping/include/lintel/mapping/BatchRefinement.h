@@ -43,8 +43,8 @@ struct RefinementParams {
   double axes_scale_sigma = 0.002;
   double axes_angle_sigma_rad = 0.005;
   // acceptance
-  double max_moved_share = 0.05;  ///< keyframes may move by this share of the way travelled, and
-  double max_moved_m = 0.30;      ///< this much more
+  double max_moved_share = 1;  ///< keyframes may move by this share of the way travelled, and
+  double max_moved_m = 0.30;   ///< this much more
   double max_turned_rad = 0.15;
   double max_imu_error = 3.0;  ///< RMS of the IMU's residuals in standard deviations; or no worse than before
 
@@ -90,7 +90,7 @@ struct RefinementReport {
   std::size_t held_out = 0;                              ///< how many these are
   double held_out_growth = 0;  ///< of their errors, in standard deviations of its mean; 0 with fewer than three
   double imu_before = 0, imu_after = 0;            ///< RMS, standard deviations
-  double moved_m = 0, turned_rad = 0;              ///< most, of a keyframe
+  double moved_m = 0, turned_rad = 0;              ///< most, of a keyframe, beside what all of its world have in common
   double least_offset_s = 0, most_offset_s = 0;    ///< of the keyframes, between the clocks, beside their mean
   Eigen::Matrix3d axes = Eigen::Matrix3d::Zero();  ///< Rig::accelerometer_axes as they should be
   double scale_sigma = 0;  ///< relative standard deviation of the size of everything: by what the residuals leave open,

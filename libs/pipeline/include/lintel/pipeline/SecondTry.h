@@ -9,8 +9,8 @@ namespace lintel {
 /// too gentle for its IMU.
 bool lacksScale(const OdometryResult& result);
 
-/// For the same recording once more. A start may be less sure of the scale, and the refinement, which has the whole
-/// recording to find it, may move everything.
+/// For the same recording once more. A start may be less sure of the scale: the refinement has the whole recording to
+/// find it.
 Configuration secondTryOf(Configuration configuration);
 
 /// Whether the second try's result is the better one: it is refined, no check fails, and it has poses for more frames.
