@@ -73,7 +73,7 @@ PriorParts makeAxesPriors(double scale_sigma, double angle_sigma_rad) {
     for (Eigen::Index i = 0; i < A.rows(); ++i) A(i, elements[static_cast<std::size_t>(i)]) = 1 / sigma;
     std::vector<PriorBlock> block{{std::make_shared<VectorManifold>(kAxesSize), AxesBlock::Zero()}};
     const Eigen::VectorXd zero = Eigen::VectorXd::Zero(A.rows());
-    parts.push_back({std::make_unique<PriorFactor>(std::move(block), std::move(A), zero), true});
+    parts.push_back({std::make_unique<PriorFactor>(std::move(block), std::move(A), zero), false});
   };
   add({0, 4, 8}, scale_sigma);
   add({1, 2, 3, 5, 6, 7}, angle_sigma_rad);

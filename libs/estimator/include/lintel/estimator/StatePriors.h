@@ -35,7 +35,8 @@ PriorParts makeExtrinsicsPriors(const CalibrationParams& params, const Pose& T_b
 /// The correction about zero: focal lengths, image centre, distortion, readout, time offset.
 PriorParts makeCorrectionPriors(const CalibrationParams& params);
 
-/// What the accelerometer's axes are wrong by about zero: scales, directions [rad].
+/// What the accelerometer's axes are wrong by about zero: scales, directions [rad]. Without a robust loss: a motion
+/// that does not show some of them would lead them anywhere.
 PriorParts makeAxesPriors(double scale_sigma, double angle_sigma_rad);
 
 /// Zero velocity of a body at rest, to within `velocity_sigma` [m/s]; a motion block.
