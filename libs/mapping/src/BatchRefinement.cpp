@@ -12,11 +12,11 @@
 #include "KeyframeClusters.h"
 #include "LineGroups.h"
 #include "MapFitting.h"
+#include "SampleCorrection.h"
 #include "TrajectoryChange.h"
 #include "lintel/core/FreeMemory.h"
 #include "lintel/core/Quantiles.h"
 #include "lintel/estimator/StatePriors.h"
-#include "lintel/inertial/AccelerometerAxes.h"
 #include "lintel/mapping/MapBuilder.h"
 
 namespace lintel {
@@ -139,25 +139,6 @@ bool isFinite(const MapMaterial& material) {
          });
 }
 
-/// The keyframes' samples as an accelerometer with right axes would have measured them.
-void correctSamples(MapMaterial& material) {
-  for (RetiredKeyframe& keyframe : material.keyframes)
-    if (keyframe.imu) keyframe.imu = std::make_shared<Preintegration>(withAxes(*keyframe.imu, material.axes));
-  material.axes = {};
-}
-
-/// Of the keyframes' samples.
-Eigen::Vector3d meanSpecificForce(const std::vector<RetiredKeyframe>& keyframes) {
-  Eigen::Vector3d sum = Eigen::Vector3d::Zero();
-  std::size_t count = 0;
-  for (const RetiredKeyframe& keyframe : keyframes) {
-    if (!keyframe.imu) continue;
-    for (const ImuSample& sample : keyframe.imu->samples()) sum += sample.accel;
-    count += keyframe.imu->samples().size();
-  }
-  return count == 0 ? sum : sum / static_cast<double>(count);
-}
-
 template <class... Args>
 std::string text(const char* format, Args... args) {
   char buffer[256];
@@ -216,7 +197,7 @@ RefinementReport BatchRefinement::refine(MapMaterial& material, const Refinement
     }
   }
   if (report.accepted) {
-    correctSamples(refined);
+    correctSamples(refined.axes, refined.keyframes);
     refined.trajectory = refinedTrajectory(material, refined.keyframes);
     material = std::move(refined);
   } else {

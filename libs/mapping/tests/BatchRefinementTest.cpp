@@ -174,7 +174,8 @@ TEST_F(BatchRefinementTest, ViewsOfAllLandmarksTogetherAreBounded) {
   const std::size_t others = 2 * report.points + 15 * material_.keyframes.size() + 100;  // lengths, IMU, priors
   EXPECT_GT(unbounded.residuals, 2 * 1000 + others) << "else the bound means nothing";
   EXPECT_LT(report.residuals, 2 * 600 + others);
-  EXPECT_GT(report.points, 0.95 * static_cast<double>(unbounded.points)) << "none is left out for its views";
+  EXPECT_NEAR(static_cast<double>(report.points), static_cast<double>(unbounded.points), 2)
+      << "or every second is left out";
   EXPECT_LT(error(material_), 0.3 * before);
 }
 
@@ -481,7 +482,9 @@ TEST_F(BatchRefinementTest, AnErrorOfTheAccelerometerThatComesAndGoesIsNoMotion)
   MapMaterial without = material_;
   disturb(material_, 0.07, error_b);
   disturb(without, 0, error_b);
-  EXPECT_TRUE(refine(material_).accepted);
+  const RefinementReport report = refine(material_);
+  EXPECT_TRUE(report.accepted);
+  EXPECT_LT(report.axes.cwiseAbs().maxCoeff(), 4 * params_.axes_angle_sigma_rad) << "nor a fault of its axes";
   refine(without);
   EXPECT_LT(error(material_), 0.6 * error(without));
 }
@@ -500,7 +503,8 @@ TEST_F(BatchRefinementTest, WrongAxesOfTheAccelerometerAreFoundAndItsSamplesCorr
   MapMaterial held = material_;
   const RefinementReport report = refine(material_);
   EXPECT_TRUE(report.accepted) << report.verdict;
-  EXPECT_LT((report.axes - axes).norm(), 0.6 * axes.norm()) << report.axes;
+  EXPECT_LT((report.axes - axes).norm(), 0.5 * axes.norm()) << report.axes;
+  EXPECT_NEAR(report.axes(1, 2), axes(1, 2), 0.003);  // of what varies most
   params_.axes_scale_sigma = params_.axes_angle_sigma_rad = 1e-9;
   EXPECT_LT(refine(held).axes.norm(), 1e-6);
   const auto spread = [](const MapMaterial& m) {
@@ -511,7 +515,7 @@ TEST_F(BatchRefinementTest, WrongAxesOfTheAccelerometerAreFoundAndItsSamplesCorr
     }
     return (most - least).norm();
   };
-  EXPECT_LT(spread(material_), 0.4 * spread(held)) << "what was taken for a bias that changes";
+  EXPECT_LT(spread(material_), 0.3 * spread(held)) << "what was taken for a bias that changes";
 }
 
 TEST_F(BatchRefinementTest, EachRecordingHasAMeanBiasOfItsOwn) {

@@ -109,7 +109,7 @@ void Conversion::openAny() {
   for (const Warning& warning : stream->openingWarnings()) log_.add(warning);
   const Rig& rig = stream->rig();
   const std::string label = "cam0";
-  note_.imu_noise = rig.imu_noise;
+  note_.imu_noise = rig.imu_noise;  // and no axes of the accelerometer: the stream's samples are corrected
   note_.imu_rate_hz = rig.imu_rate_hz;
   note_.camera_rates_hz[label] = rig.camera_rate_hz;
   if (rig.line_delay_s != 0) note_.line_delays_s[label] = rig.line_delay_s;

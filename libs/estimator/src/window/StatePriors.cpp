@@ -66,18 +66,10 @@ PriorParts makeCorrectionPriors(const CalibrationParams& p) {
   return parts;
 }
 
-PriorParts makeAxesPriors(double scale_sigma, double angle_sigma_rad) {
-  PriorParts parts;
-  const auto add = [&](const std::vector<int>& elements, double sigma) {
-    Eigen::MatrixXd A = Eigen::MatrixXd::Zero(static_cast<Eigen::Index>(elements.size()), kAxesSize);
-    for (Eigen::Index i = 0; i < A.rows(); ++i) A(i, elements[static_cast<std::size_t>(i)]) = 1 / sigma;
-    std::vector<PriorBlock> block{{std::make_shared<VectorManifold>(kAxesSize), AxesBlock::Zero()}};
-    const Eigen::VectorXd zero = Eigen::VectorXd::Zero(A.rows());
-    parts.push_back({std::make_unique<PriorFactor>(std::move(block), std::move(A), zero), false});
-  };
-  add({0, 4, 8}, scale_sigma);
-  add({1, 2, 3, 5, 6, 7}, angle_sigma_rad);
-  return parts;
+std::unique_ptr<PriorFactor> makeAxesPrior(double scale_sigma, double angle_sigma_rad) {
+  Eigen::Matrix3d sigmas = Eigen::Matrix3d::Constant(angle_sigma_rad);
+  sigmas.diagonal().setConstant(scale_sigma);
+  return makeBlockPrior(std::make_shared<VectorManifold>(kAxesSize), AxesBlock::Zero(), AxesBlock::Map(sigmas.data()));
 }
 
 std::unique_ptr<PriorFactor> makeRestPrior(double velocity_sigma) {

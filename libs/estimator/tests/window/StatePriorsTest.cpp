@@ -100,6 +100,18 @@ TEST(CalibrationPriors, WhatIsNotRefinedIsHeldWithoutARobustLoss) {
   EXPECT_TRUE(others[3].refined);
 }
 
+TEST(AxesPrior, ScalesAndDirectionsHaveTheirOwnSigmas) {
+  const auto prior = makeAxesPrior(0.002, 0.01);
+  AxesBlock axes = AxesBlock::Zero();
+  axes[4] = 0.006;  // the scale of y
+  axes[5] = -0.02;  // y shows what is along z
+  Eigen::VectorXd r(prior->num_residuals());
+  const double* block = axes.data();
+  ASSERT_TRUE(prior->Evaluate(&block, r.data(), nullptr));
+  EXPECT_NEAR(r.norm(), std::hypot(3, 2), 1e-12);
+  EXPECT_NEAR(r.cwiseAbs().maxCoeff(), 3, 1e-12);
+}
+
 TEST(ParamsFor, ADistortionOfZeroIsNotKnown) {
   Camera camera = eurocRig().camera;
   EstimatorParams params;

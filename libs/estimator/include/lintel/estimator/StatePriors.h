@@ -35,15 +35,15 @@ PriorParts makeExtrinsicsPriors(const CalibrationParams& params, const Pose& T_b
 /// The correction about zero: focal lengths, image centre, distortion, readout, time offset.
 PriorParts makeCorrectionPriors(const CalibrationParams& params);
 
-/// What the accelerometer's axes are wrong by about zero: scales, directions [rad]. Without a robust loss: a motion
-/// that does not show some of them would lead them anywhere.
-PriorParts makeAxesPriors(double scale_sigma, double angle_sigma_rad);
-
 /// Zero velocity of a body at rest, to within `velocity_sigma` [m/s]; a motion block.
 std::unique_ptr<PriorFactor> makeRestPrior(double velocity_sigma);
 
 /// Two poses at one position, to within `position_sigma` [m]; their pose blocks, the earlier one first.
 std::unique_ptr<PriorFactor> makeStillPrior(const PoseBlock& earlier, double position_sigma);
+
+/// What the accelerometer's axes are wrong by about zero: scales, directions [rad]. It takes no robust loss: where the
+/// motion does not show some of them, errors of the images would lead them anywhere.
+std::unique_ptr<PriorFactor> makeAxesPrior(double scale_sigma, double angle_sigma_rad);
 
 /// The mean bias of a run about `mean` [m/s^2].
 std::unique_ptr<PriorFactor> makeMeanBiasPrior(const Eigen::Vector3d& mean, const InitializerParams& params);
