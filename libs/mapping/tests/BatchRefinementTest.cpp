@@ -489,10 +489,9 @@ TEST_F(BatchRefinementTest, AnErrorOfTheAccelerometerThatComesAndGoesIsNoMotion)
   EXPECT_LT(error(material_), 0.6 * error(without));
 }
 
-TEST_F(BatchRefinementTest, WrongAxesOfTheAccelerometerAreFoundAndItsSamplesCorrected) {
-  Eigen::Matrix3d axes;
-  axes << 0.004, -0.02, 0, 0.05, -0.006, -0.03, -0.01, 0.02, 0.01;
-  for (RetiredKeyframe& keyframe : material_.keyframes) {
+/// An accelerometer whose samples f show the specific force f + axes f.
+void misalign(MapMaterial& material, const Eigen::Matrix3d& axes) {
+  for (RetiredKeyframe& keyframe : material.keyframes) {
     if (!keyframe.imu) continue;
     ImuBatch samples = keyframe.imu->samples();
     for (ImuSample& sample : samples) sample.accel = (Eigen::Matrix3d::Identity() + axes).inverse() * sample.accel;
@@ -500,6 +499,17 @@ TEST_F(BatchRefinementTest, WrongAxesOfTheAccelerometerAreFoundAndItsSamplesCorr
     imu->append(samples);
     keyframe.imu = imu;
   }
+}
+
+Eigen::Matrix3d axesOfATelephone() {
+  Eigen::Matrix3d axes;
+  axes << 0.004, -0.02, 0, 0.05, -0.006, -0.03, -0.01, 0.02, 0.01;
+  return axes;
+}
+
+TEST_F(BatchRefinementTest, WrongAxesOfTheAccelerometerAreFoundAndItsSamplesCorrected) {
+  const Eigen::Matrix3d axes = axesOfATelephone();
+  misalign(material_, axes);
   MapMaterial held = material_;
   const RefinementReport report = refine(material_);
   EXPECT_TRUE(report.accepted) << report.verdict;
@@ -516,6 +526,18 @@ TEST_F(BatchRefinementTest, WrongAxesOfTheAccelerometerAreFoundAndItsSamplesCorr
     return (most - least).norm();
   };
   EXPECT_LT(spread(material_), 0.3 * spread(held)) << "what was taken for a bias that changes";
+}
+
+TEST_F(BatchRefinementTest, AxesBeyondThePriorOfACalibratedSensorAreHeldLessFirmly) {
+  params_.axes_scale_sigma = 0.0004;
+  params_.axes_angle_sigma_rad = 0.001;
+  const auto found = [&](double share) {
+    MapMaterial material = material_;
+    misalign(material, share * axesOfATelephone());
+    const RefinementReport report = refine(material);
+    return report.axes(1, 2) / (share * axesOfATelephone()(1, 2));
+  };
+  EXPECT_GT(found(1), 4 * found(0.1)) << "one prior would find the same share of both";
 }
 
 TEST_F(BatchRefinementTest, EachRecordingHasAMeanBiasOfItsOwn) {

@@ -39,9 +39,10 @@ struct RefinementParams {
   /// By how much the offset between the clocks of camera and IMU changes within a second, standard deviation; it may
   /// jump by more. 0: never.
   double offset_walk_s = 3e-4;
-  // what the axes of an accelerometer are wrong by, standard deviations
-  double axes_scale_sigma = 0.003;
-  double axes_angle_sigma_rad = 0.01;
+  // what the axes of a calibrated accelerometer are wrong by, standard deviations; four times as much once they are
+  // found beyond three of them
+  double axes_scale_sigma = 0.002;
+  double axes_angle_sigma_rad = 0.005;
   // acceptance
   double max_moved_share = 1;  ///< keyframes may move by this share of the way travelled, and
   double max_moved_m = 0.30;   ///< this much more
