@@ -125,7 +125,7 @@ class Report {
   }
 
   void summary() {
-    if (!result_.verdict.empty()) page_.warnings({"Not to be trusted: " + result_.verdict + "."});
+    if (!result_.fault().empty()) page_.warnings({"Not to be trusted: " + result_.fault() + "."});
     const OdometryStatistics& s = result_.statistics;
     const double duration_s = 1e-9 * static_cast<double>(s.last_frame_ns - s.first_frame_ns);
     double path_m = 0;

@@ -13,6 +13,7 @@
 #include "CalibrationRemarks.h"
 #include "ClockSearch.h"
 #include "EstimationStage.h"
+#include "RefinedComparison.h"
 #include "RunCheck.h"
 #include "TrackingStage.h"
 #include "lintel/core/BoundedQueue.h"
@@ -162,6 +163,7 @@ OdometryResult runOdometry(Recording& recording, const Configuration& configurat
     result.remarks.push_back(stamps);
   result.evidence = check.evidence();
   result.verdict = check.verdict(result.statistics, result.rig);
+  result.contradiction = contradictionOf(result);
   return result;
 }
 

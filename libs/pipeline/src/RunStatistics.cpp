@@ -210,7 +210,7 @@ std::string statisticsJson(const OdometryResult& result, const Rig& given, const
                   {"tracking", trackingJson(s.front_end)},
                   {"warnings", warnings},
                   {"checks", result.evidence},
-                  {"not_to_be_trusted", result.verdict},
+                  {"not_to_be_trusted", result.fault()},
                   {"ended_early", result.error},
                   {"partial", result.cancelled || !result.error.empty()}};
   return json.dump(2) + "\n";

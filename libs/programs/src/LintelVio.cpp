@@ -78,7 +78,7 @@ class LintelVio {
       throw Stopped(result.error + "; trajectory and map until then are in " + output_, stop.exitCode());
     if (!result.error.empty())
       throw RecordingError(result.error + " (what was computed until then is in " + output_ + ")");
-    if (!result.verdict.empty()) throw std::runtime_error(input_ + ": not to be trusted: " + result.verdict);
+    if (!result.fault().empty()) throw std::runtime_error(input_ + ": not to be trusted: " + result.fault());
     if (result.trajectory.empty()) throw std::runtime_error(noPose(result));
     return 0;
   }
@@ -328,7 +328,7 @@ class LintelVio {
     double length = 0;
     for (std::size_t i = 1; i < result.trajectory.size(); ++i)
       length += (result.trajectory[i].T_w_b.p - result.trajectory[i - 1].T_w_b.p).norm();
-    if (!result.verdict.empty()) out_ << "NOT TO BE TRUSTED: " << result.verdict << "\n";
+    if (!result.fault().empty()) out_ << "NOT TO BE TRUSTED: " << result.fault() << "\n";
     out_ << std::fixed << std::setprecision(1);
     out_ << s.frames << " frames in " << durationText(wall_s) << " ("
          << static_cast<double>(s.frames) / std::max(wall_s, 1e-3) << " frames/s), " << s.frames_with_pose

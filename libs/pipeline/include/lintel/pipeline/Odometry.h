@@ -81,9 +81,14 @@ struct OdometryResult {
   std::vector<std::string> remarks;        ///< what was corrected of the recording's own data, in words
   std::map<std::string, double> evidence;  ///< what the checks of the run have measured, by name
   std::string verdict;                     ///< why trajectory and map are probably wrong; empty when no check fails
+  std::string contradiction;               ///< why the causal trajectory is probably wrong, though the refined one
+                                           ///< and the map are not; empty when they agree
   bool cancelled =
       false;          ///< RunOptions::cancelled ended the run: trajectory and map are those of the frames until then
   std::string error;  ///< why the recording ended early; empty when it was read to its end or cancelled
+
+  /// The verdict, or else the contradiction.
+  const std::string& fault() const { return verdict.empty() ? contradiction : verdict; }
 };
 
 /// The parts of a run that take time.
