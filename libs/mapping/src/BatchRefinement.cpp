@@ -25,7 +25,7 @@ namespace {
 
 // of the cost, for each coordinate of a pose: smaller steps are not worth an iteration. Landmarks are chosen and
 // classified anew after every round but the last: those need not converge.
-constexpr double kFirstGain = 0.3, kLastGain = 0.04;
+constexpr double kFirstGain = 0.1, kLastGain = 0.01;
 constexpr double kUsualIterations = 12;  // of a round, at most; those for which the scale goes on are rare
 
 constexpr double kAccelerometerScale = 0.005;  // standard deviation of a calibrated one's: no residual shows it
@@ -283,6 +283,8 @@ RefinementReport BatchRefinement::adjust(MapMaterial& material, const Refinement
                                          const std::vector<PointJoin>& joins) const {
   RefinementReport report;
   const MapMaterial before = camerasOf(material);
+  MapParams fit = map_;
+  fit.view_max_error_px = params_.view_max_error_px;
   material.axes.mean_f = meanSpecificForce(material.keyframes);
   std::vector<PointRecord> held_out;
   for (const PointRecord& point : material.points)
@@ -300,7 +302,7 @@ RefinementReport BatchRefinement::adjust(MapMaterial& material, const Refinement
   for (int round = 0; round < params_.rounds; ++round) {
     if (!goOn(round, 0)) return report;
     returnFreeMemory();
-    MapFitting fitting(map_, material);
+    MapFitting fitting(fit, material);
     fitting.fitAll();
     // The causal poses drift: estimates of the same landmark coincide only after a first adjustment.
     // Passes that come closer now can be told apart better in the next round; the last one must be right.
@@ -315,10 +317,10 @@ RefinementReport BatchRefinement::adjust(MapMaterial& material, const Refinement
     std::vector<ParallelLines> groups;
     if (round > 0 && params_.groups) groups = parallelLines(map_, material);
     returnFreeMemory();
-    const std::vector<Anchors> anchors =
-        last ? fewAnchors(material.keyframes, params_.most_keyframes)
-             : fewAnchors(material.keyframes, (params_.most_keyframes + 1) / 2, params_.keyframe_interval_s);
     const RefinementParams params = withPriorFor(material.axes.A, params_);
+    const bool few = material.keyframes.size() <= static_cast<std::size_t>(params_.most_keyframes);
+    const std::vector<Anchors> anchors =
+        fewAnchors(material.keyframes, last || few ? params_.most_keyframes : (params_.most_keyframes + 1) / 2);
     BatchProblem problem(calibrated_, estimator_, material, anchors, used.points, used.lines, viewsEach(material, used),
                          groups, params);
     if (round == 0) report.imu_before = problem.imuError();

@@ -163,6 +163,21 @@ TEST_F(BatchRefinementTest, TakesTheDriftAway) {
   EXPECT_LT(report.scale_sigma, 0.02);
 }
 
+/// Poses of a start are off by centimetres, views of near landmarks by pixels: those mend the poses.
+TEST_F(BatchRefinementTest, ViewsThatWrongPosesPutOffHaveResiduals) {
+  for (RetiredKeyframe& keyframe : material_.keyframes)
+    if (keyframe.t_ns - flight_.frames[0].tracks.t_ns < 1'000'000'000)
+      keyframe.T_w_b.p += Eigen::Vector3d(0, keyframe.id % 2 ? 0.03 : -0.03, 0);
+  params_.rounds = 1;
+  MapMaterial narrow = material_, all = material_;
+  const std::size_t residuals = refine(material_).residuals;
+  params_.view_max_error_px = 1000;
+  EXPECT_EQ(residuals, refine(all).residuals) << "none is 10 px off";
+  params_.view_max_error_px = 2;
+  EXPECT_GT(residuals, refine(narrow).residuals + 100);
+  EXPECT_LT(error(material_), error(narrow));
+}
+
 /// On long flights each landmark has fewer views in the adjustment.
 TEST_F(BatchRefinementTest, ViewsOfAllLandmarksTogetherAreBounded) {
   MapMaterial all = material_;

@@ -17,18 +17,20 @@ struct RefinementParams {
   bool enabled = true;
   int rounds = 3;           ///< of: estimate and merge landmarks, adjust, reject outliers
   int max_iterations = 25;  ///< of a round
-  /// In all rounds but the last keyframes are adjusted that follow each other by so much; those between are carried by
-  /// them, and their views count. 0: all are adjusted.
-  double keyframe_interval_s = 0.3;
-  int most_keyframes = 400;  ///< adjusted in the last round, half as many in the others; 0: all
-  bool lines = true;         ///< lines have residuals too; off: they follow the poses
-  bool groups = true;        ///< lines of a parallel group share a direction, as far as the group is parallel
+  /// Adjusted in the last round; those between are carried by them, and their views count. Where there are more, half
+  /// as many are adjusted in the other rounds. 0: all.
+  int most_keyframes = 400;
+  bool lines = true;   ///< lines have residuals too; off: they follow the poses
+  bool groups = true;  ///< lines of a parallel group share a direction, as far as the group is parallel
   /// Standard deviations of points and lines against the window's, which are larger than its residuals because what it
   /// marginalises is never linearised again.
   double sigma_scale = 0.5;
-  int min_views = 3;                           ///< keyframes that see a landmark of the adjustment
-  int max_views = 40;                          ///< of a landmark that have residuals, spread over all it has; 0: all
-  int most_residuals = 200000;                 ///< views of all landmarks together; beyond it each has fewer; 0: all
+  int min_views = 3;            ///< keyframes that see a landmark of the adjustment
+  int max_views = 40;           ///< of a landmark that have residuals, spread over all it has; 0: all
+  int most_residuals = 200000;  ///< views of all landmarks together; beyond it each has fewer; 0: all
+  /// A view farther from its landmark has no residual. Wide: while poses are wrong, views that the right ones explain
+  /// are pixels off, and without them nothing would mend the poses.
+  double view_max_error_px = 10;
   double line_max_sigma_direction_rad = 0.10;  ///< vaguer lines have no residuals
   double line_max_relative_sigma = 0.10;       ///< of their distance
   // points that were seen again, see joinPoints()
@@ -54,7 +56,6 @@ struct RefinementParams {
     field("enabled", enabled);
     field("rounds", rounds, Range{1, 100});
     field("max_iterations", max_iterations, Range{1, 1000});
-    field("keyframe_interval_s", keyframe_interval_s, Range{0, 1});
     field("most_keyframes", most_keyframes, Range{0, 1000000});
     field("lines", lines);
     field("groups", groups);
@@ -62,6 +63,7 @@ struct RefinementParams {
     field("min_views", min_views, Range{2, 1000});
     field("max_views", max_views, Range{0, 100000});
     field("most_residuals", most_residuals, Range{0, 100000000});
+    field("view_max_error_px", view_max_error_px, ReferencePixels{0.1, 1000});
     field("line_max_sigma_direction_rad", line_max_sigma_direction_rad, Range{0.0001, 10});
     field("line_max_relative_sigma", line_max_relative_sigma, Range{0.0001, 100});
     field("join_sigma_px", join_sigma_px, Range{0.01, 100});
