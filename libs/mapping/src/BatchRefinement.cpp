@@ -139,18 +139,6 @@ bool isFinite(const MapMaterial& material) {
          });
 }
 
-/// The prior of the accelerometer's axes is that of a calibrated sensor, until they are found beyond three of its
-/// standard deviations: then it is that of one which was not.
-RefinementParams withPriorFor(const Eigen::Matrix3d& axes, RefinementParams params) {
-  constexpr double kRefuted = 3, kWider = 4;
-  Eigen::Matrix3d sigmas = Eigen::Matrix3d::Constant(params.axes_angle_sigma_rad);
-  sigmas.diagonal().setConstant(params.axes_scale_sigma);
-  if (axes.cwiseQuotient(sigmas).cwiseAbs().maxCoeff() < kRefuted) return params;
-  params.axes_scale_sigma *= kWider;
-  params.axes_angle_sigma_rad *= kWider;
-  return params;
-}
-
 template <class... Args>
 std::string text(const char* format, Args... args) {
   char buffer[256];
@@ -272,10 +260,9 @@ std::size_t BatchRefinement::viewsEach(const MapMaterial& material, const Used& 
 std::vector<CameraErrors> BatchRefinement::errorsOf(MapMaterial& material) const {
   constexpr double kInterval_s = 0.5;  // errors of poses change slowly: those between follow from their neighbours
   const Used used = usedOf(material);
-  const RefinementParams params = withPriorFor(material.axes.A, params_);
   BatchProblem problem(calibrated_, estimator_, material,
                        fewAnchors(material.keyframes, params_.most_keyframes, kInterval_s), used.points, used.lines,
-                       viewsEach(material, used), {}, params);
+                       viewsEach(material, used), {}, params_);
   return problem.drawErrors();
 }
 
@@ -317,12 +304,11 @@ RefinementReport BatchRefinement::adjust(MapMaterial& material, const Refinement
     std::vector<ParallelLines> groups;
     if (round > 0 && params_.groups) groups = parallelLines(map_, material);
     returnFreeMemory();
-    const RefinementParams params = withPriorFor(material.axes.A, params_);
     const bool few = material.keyframes.size() <= static_cast<std::size_t>(params_.most_keyframes);
     const std::vector<Anchors> anchors =
         fewAnchors(material.keyframes, last || few ? params_.most_keyframes : (params_.most_keyframes + 1) / 2);
     BatchProblem problem(calibrated_, estimator_, material, anchors, used.points, used.lines, viewsEach(material, used),
-                         groups, params);
+                         groups, params_);
     if (round == 0) report.imu_before = problem.imuError();
     const auto summary = problem.solve(params_.max_iterations, last ? kLastGain : kFirstGain,
                                        [&](int iteration) { return goOn(round, iteration); });

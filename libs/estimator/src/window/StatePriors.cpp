@@ -66,10 +66,18 @@ PriorParts makeCorrectionPriors(const CalibrationParams& p) {
   return parts;
 }
 
-std::unique_ptr<PriorFactor> makeAxesPrior(double scale_sigma, double angle_sigma_rad) {
+Eigen::Matrix3d axesSigmas(const Eigen::Matrix3d& found, double scale_sigma, double angle_sigma_rad) {
+  constexpr double kRefuted = 3, kWider = 4, kOthers = 2;
   Eigen::Matrix3d sigmas = Eigen::Matrix3d::Constant(angle_sigma_rad);
   sigmas.diagonal().setConstant(scale_sigma);
-  return makeBlockPrior(std::make_shared<VectorManifold>(kAxesSize), AxesBlock::Zero(), AxesBlock::Map(sigmas.data()));
+  const auto refuted = found.cwiseAbs().array() > kRefuted * sigmas.array();
+  if (!refuted.any()) return sigmas;
+  return refuted.select(kWider * sigmas, kOthers * sigmas);
+}
+
+std::unique_ptr<PriorFactor> makeAxesPrior(const Eigen::Matrix3d& sigmas) {
+  const Eigen::Matrix3d rows = sigmas.transpose();  // the block has them row by row
+  return makeBlockPrior(std::make_shared<VectorManifold>(kAxesSize), AxesBlock::Zero(), AxesBlock::Map(rows.data()));
 }
 
 std::unique_ptr<PriorFactor> makeRestPrior(double velocity_sigma) {

@@ -101,7 +101,7 @@ TEST(CalibrationPriors, WhatIsNotRefinedIsHeldWithoutARobustLoss) {
 }
 
 TEST(AxesPrior, ScalesAndDirectionsHaveTheirOwnSigmas) {
-  const auto prior = makeAxesPrior(0.002, 0.01);
+  const auto prior = makeAxesPrior(axesSigmas(Eigen::Matrix3d::Zero(), 0.002, 0.01));
   AxesBlock axes = AxesBlock::Zero();
   axes[4] = 0.006;  // the scale of y
   axes[5] = -0.02;  // y shows what is along z
@@ -110,6 +110,25 @@ TEST(AxesPrior, ScalesAndDirectionsHaveTheirOwnSigmas) {
   ASSERT_TRUE(prior->Evaluate(&block, r.data(), nullptr));
   EXPECT_NEAR(r.norm(), std::hypot(3, 2), 1e-12);
   EXPECT_NEAR(r.cwiseAbs().maxCoeff(), 3, 1e-12);
+}
+
+TEST(AxesPrior, WhereAnElementIsFoundBeyondThreeStandardDeviationsAllAreLessCertain) {
+  Eigen::Matrix3d found = Eigen::Matrix3d::Zero(), expected = Eigen::Matrix3d::Constant(0.01);
+  expected.diagonal().setConstant(0.002);
+  found(0, 1) = 0.029;
+  EXPECT_TRUE(axesSigmas(found, 0.002, 0.01).isApprox(expected)) << "a calibrated sensor";
+  found(1, 0) = -0.031;
+  found(2, 2) = 0.0061;
+  expected *= 2;
+  expected(1, 0) = 0.04;
+  expected(2, 2) = 0.008;
+  EXPECT_TRUE(axesSigmas(found, 0.002, 0.01).isApprox(expected)) << axesSigmas(found, 0.002, 0.01);
+  AxesBlock axes = AxesBlock::Zero();
+  axes[3] = 0.08;  // (1, 0), row by row
+  Eigen::VectorXd r(9);
+  const double* block = axes.data();
+  ASSERT_TRUE(makeAxesPrior(expected)->Evaluate(&block, r.data(), nullptr));
+  EXPECT_NEAR(r.norm(), 2, 1e-12);
 }
 
 TEST(ParamsFor, ADistortionOfZeroIsNotKnown) {

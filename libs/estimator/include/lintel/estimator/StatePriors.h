@@ -41,9 +41,14 @@ std::unique_ptr<PriorFactor> makeRestPrior(double velocity_sigma);
 /// Two poses at one position, to within `position_sigma` [m]; their pose blocks, the earlier one first.
 std::unique_ptr<PriorFactor> makeStillPrior(const PoseBlock& earlier, double position_sigma);
 
-/// What the accelerometer's axes are wrong by about zero: scales, directions [rad]. It takes no robust loss: where the
-/// motion does not show some of them, errors of the images would lead them anywhere.
-std::unique_ptr<PriorFactor> makeAxesPrior(double scale_sigma, double angle_sigma_rad);
+/// Standard deviations of what an accelerometer's axes are wrong by: those of a calibrated sensor, for scales (the
+/// diagonal) and directions [rad], unless an element has been `found` beyond three of them. Such elements are four times
+/// as uncertain, and the others twice.
+Eigen::Matrix3d axesSigmas(const Eigen::Matrix3d& found, double scale_sigma, double angle_sigma_rad);
+
+/// What the accelerometer's axes are wrong by about zero, with these standard deviations. It takes no robust loss:
+/// where the motion does not show some of them, errors of the images would lead them anywhere.
+std::unique_ptr<PriorFactor> makeAxesPrior(const Eigen::Matrix3d& sigmas);
 
 /// The mean bias of a run about `mean` [m/s^2].
 std::unique_ptr<PriorFactor> makeMeanBiasPrior(const Eigen::Vector3d& mean, const InitializerParams& params);

@@ -41,8 +41,7 @@ struct RefinementParams {
   /// By how much the offset between the clocks of camera and IMU changes within a second, standard deviation; it may
   /// jump by more. 0: never.
   double offset_walk_s = 3e-4;
-  // what the axes of a calibrated accelerometer are wrong by, standard deviations; four times as much once they are
-  // found beyond three of them
+  // what the axes of a calibrated accelerometer are wrong by, standard deviations; see axesSigmas()
   double axes_scale_sigma = 0.002;
   double axes_angle_sigma_rad = 0.005;
   // acceptance
