@@ -42,8 +42,8 @@ std::unique_ptr<PriorFactor> makeRestPrior(double velocity_sigma);
 std::unique_ptr<PriorFactor> makeStillPrior(const PoseBlock& earlier, double position_sigma);
 
 /// Standard deviations of what an accelerometer's axes are wrong by: those of a calibrated sensor, for scales (the
-/// diagonal) and directions [rad], unless an element has been `found` beyond three of them. Such elements are four times
-/// as uncertain, and the others twice.
+/// diagonal) and directions [rad], unless an element has been `found` beyond three of them. Such elements are four
+/// times as uncertain, and the others twice.
 Eigen::Matrix3d axesSigmas(const Eigen::Matrix3d& found, double scale_sigma, double angle_sigma_rad);
 
 /// What the accelerometer's axes are wrong by about zero, with these standard deviations. It takes no robust loss:
