@@ -139,6 +139,15 @@ bool isFinite(const MapMaterial& material) {
          });
 }
 
+/// Takes out of the points those that are left out of the adjustment.
+std::vector<PointRecord> takeHeldOut(double share, std::vector<PointRecord>& points) {
+  const auto first =
+      std::stable_partition(points.begin(), points.end(), [&](const PointRecord& p) { return !isHeldOut(p, share); });
+  std::vector<PointRecord> held_out(std::make_move_iterator(first), std::make_move_iterator(points.end()));
+  points.erase(first, points.end());
+  return held_out;
+}
+
 template <class... Args>
 std::string text(const char* format, Args... args) {
   char buffer[256];
@@ -270,66 +279,72 @@ RefinementReport BatchRefinement::adjust(MapMaterial& material, const Refinement
                                          const std::vector<PointJoin>& joins) const {
   RefinementReport report;
   const MapMaterial before = camerasOf(material);
-  MapParams fit = map_;
-  fit.view_max_error_px = params_.view_max_error_px;
   material.axes.mean_f = meanSpecificForce(material.keyframes);
-  std::vector<PointRecord> held_out;
-  for (const PointRecord& point : material.points)
-    if (isHeldOut(point, params_.held_out_share)) held_out.push_back(point);
-  material.points.erase(std::remove_if(material.points.begin(), material.points.end(),
-                                       [&](const PointRecord& p) { return isHeldOut(p, params_.held_out_share); }),
-                        material.points.end());
-
+  const std::vector<PointRecord> held_out = takeHeldOut(params_.held_out_share, material.points);
   const auto goOn = [&](int round, int iteration) {
     const double done = round + std::min(1.0, iteration / std::min(kUsualIterations, 1.0 * params_.max_iterations));
     if (progress && !progress(done / params_.rounds) && done < params_.rounds) report.cancelled = true;
     return !report.cancelled;
   };
-  report.verdict = "not refined: the run was cancelled";
   for (int round = 0; round < params_.rounds; ++round) {
-    if (!goOn(round, 0)) return report;
-    returnFreeMemory();
-    MapFitting fitting(fit, material);
-    fitting.fitAll();
-    // The causal poses drift: estimates of the same landmark coincide only after a first adjustment.
-    // Passes that come closer now can be told apart better in the next round; the last one must be right.
-    const bool last = round + 1 == params_.rounds;
-    if (round > 0) report.merged += fitting.merge(last ? 0 : map_.merge.max_drift_px);
-    const std::size_t separate = material.points.size();
-    const double relative = round / std::max(1.0, params_.rounds - 1.0);
-    report.joined =
-        fitting.join(joins, params_.join_first_px * std::pow(params_.join_last_px / params_.join_first_px, relative),
-                     params_.join_sigma_px);
-    const Used used = usedOf(material);
-    std::vector<ParallelLines> groups;
-    if (round > 0 && params_.groups) groups = parallelLines(map_, material);
-    returnFreeMemory();
-    const bool few = material.keyframes.size() <= static_cast<std::size_t>(params_.most_keyframes);
-    const std::vector<Anchors> anchors =
-        fewAnchors(material.keyframes, last || few ? params_.most_keyframes : (params_.most_keyframes + 1) / 2);
-    BatchProblem problem(calibrated_, estimator_, material, anchors, used.points, used.lines, viewsEach(material, used),
-                         groups, params_);
-    if (round == 0) report.imu_before = problem.imuError();
-    const auto summary = problem.solve(params_.max_iterations, last ? kLastGain : kFirstGain,
-                                       [&](int iteration) { return goOn(round, iteration); });
-    if (report.cancelled) return report;
-    if (!summary.usable) {
-      report.verdict = "not refined: the adjustment found no solution";
+    const bool is_solved =
+        goOn(round, 0) && adjustOnce(
+                              round, joins, [&](int iteration) { return goOn(round, iteration); }, material, report);
+    if (!is_solved || report.cancelled) {
+      report.verdict =
+          report.cancelled ? "not refined: the run was cancelled" : "not refined: the adjustment found no solution";
       return report;
     }
-    if (round == 0) report.cost_before = summary.cost_before;
-    report.cost_after = summary.cost_after;
-    if (round > 0) report.cost_before = summary.cost_before;
-    report.imu_after = problem.imuError();
-    report.iterations += summary.iterations;
-    report.residuals = summary.residuals;
-    report.points = static_cast<std::size_t>(std::count(used.points.begin(), used.points.end(), true));
-    report.lines = static_cast<std::size_t>(std::count(used.lines.begin(), used.lines.end(), true));
-    problem.writeBack();
-    material.points.resize(separate);
-    ++report.rounds;
   }
   returnFreeMemory();
+  judge(before, held_out, material, report);
+  if (report.accepted) complete(held_out, material, report);
+  return report;
+}
+
+bool BatchRefinement::adjustOnce(int round, const std::vector<PointJoin>& joins, const std::function<bool(int)>& goOn,
+                                 MapMaterial& material, RefinementReport& report) const {
+  returnFreeMemory();
+  MapParams fit = map_;
+  fit.view_max_error_px = params_.view_max_error_px;
+  MapFitting fitting(fit, material);
+  fitting.fitAll();
+  // The causal poses drift: estimates of the same landmark coincide only after a first adjustment.
+  // Passes that come closer now can be told apart better in the next round; the last one must be right.
+  const bool last = round + 1 == params_.rounds;
+  if (round > 0) report.merged += fitting.merge(last ? 0 : map_.merge.max_drift_px);
+  const std::size_t separate = material.points.size();
+  const double relative = round / std::max(1.0, params_.rounds - 1.0);
+  report.joined =
+      fitting.join(joins, params_.join_first_px * std::pow(params_.join_last_px / params_.join_first_px, relative),
+                   params_.join_sigma_px);
+  const Used used = usedOf(material);
+  std::vector<ParallelLines> groups;
+  if (round > 0 && params_.groups) groups = parallelLines(map_, material);
+  returnFreeMemory();
+  const bool few = material.keyframes.size() <= static_cast<std::size_t>(params_.most_keyframes);
+  const std::vector<Anchors> anchors =
+      fewAnchors(material.keyframes, last || few ? params_.most_keyframes : (params_.most_keyframes + 1) / 2);
+  BatchProblem problem(calibrated_, estimator_, material, anchors, used.points, used.lines, viewsEach(material, used),
+                       groups, params_);
+  if (round == 0) report.imu_before = problem.imuError();
+  const auto summary = problem.solve(params_.max_iterations, last ? kLastGain : kFirstGain, goOn);
+  if (report.cancelled || !summary.usable) return false;
+  report.cost_before = summary.cost_before;
+  report.cost_after = summary.cost_after;
+  report.imu_after = problem.imuError();
+  report.iterations += summary.iterations;
+  report.residuals = summary.residuals;
+  report.points = static_cast<std::size_t>(std::count(used.points.begin(), used.points.end(), true));
+  report.lines = static_cast<std::size_t>(std::count(used.lines.begin(), used.lines.end(), true));
+  problem.writeBack();
+  material.points.resize(separate);
+  ++report.rounds;
+  return true;
+}
+
+void BatchRefinement::judge(const MapMaterial& before, const std::vector<PointRecord>& held_out,
+                            const MapMaterial& material, RefinementReport& report) const {
   double travelled_m = 0;
   measureChange(before, material, report, travelled_m);
   compareHeldOut(heldOutErrors(map_, before, held_out, params_.min_views),
@@ -337,10 +352,11 @@ RefinementReport BatchRefinement::adjust(MapMaterial& material, const Refinement
   const double may_move_m = params_.max_moved_m + params_.max_moved_share * travelled_m + blindDrift(before.keyframes);
   const std::string reason = objection(material, estimator_, params_, report, may_move_m);
   report.accepted = reason.empty();
-  if (!report.accepted) {
-    report.verdict = "not refined: " + reason;
-    return report;
-  }
+  if (!report.accepted) report.verdict = "not refined: " + reason;
+}
+
+void BatchRefinement::complete(const std::vector<PointRecord>& held_out, MapMaterial& material,
+                               RefinementReport& report) const {
   material.points.insert(material.points.end(), held_out.begin(), held_out.end());
   std::sort(material.points.begin(), material.points.end(),
             [](const PointRecord& a, const PointRecord& b) { return a.id < b.id; });
@@ -351,11 +367,9 @@ RefinementReport BatchRefinement::adjust(MapMaterial& material, const Refinement
   report.verdict =
       text("refined: keyframes moved by up to %.3f m; points without part in it fit to %.2f px (before %.2f)",
            report.moved_m, report.held_out_after_px, report.held_out_before_px);
-  if (!material.camera_errors.empty()) {
-    report.scale_sigma = std::hypot(scaleSigma(material), kAccelerometerScale);
-    report.verdict += text("; the size of everything is known to %.1f %%", 100 * report.scale_sigma);
-  }
-  return report;
+  if (material.camera_errors.empty()) return;
+  report.scale_sigma = std::hypot(scaleSigma(material), kAccelerometerScale);
+  report.verdict += text("; the size of everything is known to %.1f %%", 100 * report.scale_sigma);
 }
 
 }  // namespace lintel

@@ -34,7 +34,7 @@ std::string readoutRemark(const Rig& given, const CalibrationEstimate& estimate)
 }
 
 std::string axesRemark(const Rig& given, const RefinementReport& refinement) {
-  constexpr double kLeast = 0.02;  // four standard deviations of a calibrated sensor's prior
+  constexpr double kLeast = 0.02;  // four standard deviations of a direction, of a calibrated sensor's prior
   const double wrong = (refinement.axes - given.accelerometer_axes).cwiseAbs().maxCoeff();
   if (!refinement.accepted || !(wrong > kLeast)) return {};
   const Eigen::Matrix3d& A = refinement.axes;

@@ -70,7 +70,7 @@ Eigen::Matrix3d axesSigmas(const Eigen::Matrix3d& found, double scale_sigma, dou
   constexpr double kRefuted = 3, kWider = 4, kOthers = 2;
   Eigen::Matrix3d sigmas = Eigen::Matrix3d::Constant(angle_sigma_rad);
   sigmas.diagonal().setConstant(scale_sigma);
-  const auto refuted = found.cwiseAbs().array() > kRefuted * sigmas.array();
+  const Eigen::Array<bool, 3, 3> refuted = found.cwiseAbs().array() > kRefuted * sigmas.array();
   if (!refuted.any()) return sigmas;
   return refuted.select(kWider * sigmas, kOthers * sigmas);
 }
