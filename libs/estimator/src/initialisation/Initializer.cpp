@@ -322,8 +322,16 @@ std::string Initializer::verify(SlidingWindow& window) const {
   return {};
 }
 
+/// A motion that has not shown the scale for long hardly will: the window, with its poses, may find it instead.
+double Initializer::scaleSigmaFor(const SlidingWindow& window) const {
+  const InitializerParams& p = params_.initializer;
+  const double span_s = 1e-9 * static_cast<double>(window.frames.back().t_ns - window.frames.front().t_ns),
+               grown = p.max_scale_sigma * span_s / p.patience_s;
+  return std::max(p.max_scale_sigma, std::min(p.late_scale_sigma, grown));
+}
+
 bool Initializer::scaleWithin(double times, SlidingWindow& window) const {
-  return relativeScaleSigma(window) < times * params_.initializer.max_scale_sigma;
+  return relativeScaleSigma(window) < times * scaleSigmaFor(window);
 }
 
 double Initializer::relativeScaleSigma(SlidingWindow& window) const {

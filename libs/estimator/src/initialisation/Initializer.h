@@ -43,6 +43,7 @@ class Initializer {
   void tryOtherScales(SlidingWindow& best) const;
   std::vector<double> errorsPx(const SlidingWindow& window, int& candidates) const;
   bool distortionUnknown() const;
+  double scaleSigmaFor(const SlidingWindow& window) const;      ///< relative, that is asked for
   bool scaleWithin(double times, SlidingWindow& window) const;  ///< times the sigma that is asked for
   std::string verify(SlidingWindow& window) const;
   double relativeScaleSigma(SlidingWindow& window) const;

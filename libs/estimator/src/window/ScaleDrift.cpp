@@ -41,7 +41,10 @@ void ScaleDrift::afterSolve(const SlidingWindow& window) {
 bool ScaleDrift::leftStart() const {
   constexpr double kMostSigmas = 6;  // fair starts reach four, with images whose errors are alike for all tracks 5.6
   constexpr double kLeast = 0.05;    // less does not pay a new start
-  return std::abs(since_start_.log_change) > std::max(kLeast, kMostSigmas * since_start_.sigma);
+  // More pays one even if it may be chance: the poses since the start are wrong by as much.
+  constexpr double kMost = 0.1, kLeastSigmas = 2;
+  const double sigma = since_start_.sigma, most = std::max(kMost, kLeastSigmas * sigma);
+  return std::abs(since_start_.log_change) > std::clamp(kMostSigmas * sigma, kLeast, most);
 }
 
 double ScaleDrift::takeUnexplainedChange(double sigma) {

@@ -8,6 +8,7 @@
 
 #include "TestWindow.h"
 #include "lintel/estimator/StatePriors.h"
+#include "lintel/estimator/WindowUpdate.h"
 #include "lintel/geometry/Rotation.h"
 
 namespace lintel {
@@ -105,6 +106,26 @@ TEST_F(InitializerTest, AcceptedStartsAreGoodWhereverTheyAreTried) {
     EXPECT_LT(tiltError(window.frames.back(), f.truth(first + 38)), 0.05) << "from frame " << first;
   }
   EXPECT_GE(accepted, 3);
+}
+
+TEST_F(InitializerTest, TheLongerABufferTheLessCertainItsScaleMustBe) {
+  const TrackedFlight f = noisyFlight(0.5, ImuSimulatorParams{});
+  SlidingWindow window = bufferOf(f, 0, 20);  // 1.9 s
+  const auto problemWith = [&](double sigma, double patience_s, double late_sigma) {
+    EstimatorParams params = params_;
+    params.initializer.max_scale_sigma = sigma;
+    params.initializer.patience_s = patience_s;
+    params.initializer.late_scale_sigma = late_sigma;
+    SlidingWindow trial = window;
+    return Initializer(params, f.rig.T_b_c).initialise(trial);
+  };
+  double known = 0.001;
+  while (known < 1 && problemWith(known, 10, 1) != "") known *= 1.2;
+  ASSERT_LT(known, 0.1);
+  const double asked = known / 3;
+  EXPECT_EQ(problemWith(asked, 10, 1), kScaleUnknown) << "not yet longer";
+  EXPECT_EQ(problemWith(asked, 1.9 / 3.1, 1), "");
+  EXPECT_EQ(problemWith(asked, 1.9 / 3.1, 2 * asked), kScaleUnknown) << "at most that";
 }
 
 /// A wheeled robot: level, nearly straight, nearly as fast all the time, the camera looking ahead.

@@ -26,10 +26,17 @@ ScaleDrift driftOf(double sigma, const std::vector<double>& scales) {
 }
 
 TEST(ScaleDrift, ChangesAddUp) {
-  EXPECT_FALSE(driftOf(0.02, {1, 1.05, 1.12}).leftStart()) << "5.7 sigma";
-  EXPECT_TRUE(driftOf(0.02, {1, 1.05, 1.14}).leftStart()) << "6.6 sigma";
-  EXPECT_TRUE(driftOf(0.02, {1, 0.95, 0.88}).leftStart());
-  EXPECT_FALSE(driftOf(0.02, {1, 1.14, 1}).leftStart()) << "and cancel";
+  EXPECT_FALSE(driftOf(0.015, {1, 1.05, 1.085}).leftStart()) << "5.4 sigma";
+  EXPECT_TRUE(driftOf(0.015, {1, 1.05, 1.1}).leftStart()) << "6.4 sigma";
+  EXPECT_TRUE(driftOf(0.015, {1, 0.95, 0.91}).leftStart());
+  EXPECT_FALSE(driftOf(0.015, {1, 1.1, 1}).leftStart()) << "and cancel";
+}
+
+TEST(ScaleDrift, ATenthPaysANewStartUnlessTheStartWasThatUncertain) {
+  EXPECT_FALSE(driftOf(0.03, {1, 1.1}).leftStart());
+  EXPECT_TRUE(driftOf(0.03, {1, 1.11}).leftStart()) << "3.5 sigma";
+  EXPECT_FALSE(driftOf(0.08, {1, 1.16}).leftStart()) << "1.9 sigma";
+  EXPECT_TRUE(driftOf(0.08, {1, 1.18}).leftStart()) << "2.1 sigma";
 }
 
 TEST(ScaleDrift, AFewPerCentDoNotPayANewStart) {

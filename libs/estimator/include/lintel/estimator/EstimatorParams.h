@@ -138,6 +138,8 @@ struct InitializerParams {
   double min_parallax_px = 12;  ///< rotation-compensated, median, over the buffer; below: static or waiting
   double max_error_px = 2.0;    ///< median reprojection error of an accepted start
   double max_scale_sigma = 0.04;     ///< relative standard deviation of the scale of an accepted start
+  double patience_s = 2;             ///< where a buffer is longer, it may be larger in proportion,
+  double late_scale_sigma = 0.1;     ///< at most this
   double max_bias_accel = 1.5;       ///< [m/s^2]
   double bias_gyro_sigma = 0.1;      ///< prior [rad/s]
   double bias_accel_sigma = 0.2;     ///< prior [m/s^2]
@@ -154,6 +156,8 @@ struct InitializerParams {
     field("min_parallax_px", min_parallax_px, ReferencePixels{0.1, 1000});
     field("max_error_px", max_error_px, Range{0.1, 1000});
     field("max_scale_sigma", max_scale_sigma, Range{0.0001, 100});
+    field("patience_s", patience_s, Range{0.01, 1000});
+    field("late_scale_sigma", late_scale_sigma, Range{0, 100});
     field("max_bias_accel", max_bias_accel, Range{0.001, 100});
     field("bias_gyro_sigma", bias_gyro_sigma, Range{1e-6, 10});
     field("bias_accel_sigma", bias_accel_sigma, Range{1e-6, 100});
