@@ -7,6 +7,7 @@
 #include <random>
 
 #include "TestWindow.h"
+#include "initialisation/ClockFit.h"
 #include "lintel/geometry/Rotation.h"
 
 namespace lintel {
@@ -51,6 +52,23 @@ TEST(ClockOffset, IsFoundWhateverTheGyroBias) {
       EXPECT_LT(found.rms_px, 2) << offset_s;
     }
   }
+}
+
+/// Else the costs along the range, and with them the standard deviation, would show the order of the search.
+TEST(ClockOffset, TheCostOfAnOffsetIsTheSameFromWhereverTheSearchComes) {
+  const TrackedFlight f = turningFlight(0.05, 0.5);
+  const Span span = spanOf(f, 0);
+  const GyroPath path(span.imu);
+  const std::vector<TimedPair> pairs = timedPairs(span.frames, path, f.rig);
+  const auto costAt = [&](const std::vector<double>& offsets_s) {
+    ClockFit fit(pairs, path, 0, 2 / f.rig.camera.meanFocal());
+    double cost = 0;
+    for (const double offset_s : offsets_s) cost = fit.at(offset_s).cost;
+    return cost;
+  };
+  const double cost = costAt({0.06});
+  EXPECT_NEAR(costAt({-0.1, 0.06}), cost, 1e-4 * cost);
+  EXPECT_NEAR(costAt({0.1, 0.06}), cost, 1e-4 * cost);
 }
 
 TEST(ClockOffset, IsNotFoundBeyondItsRange) {
