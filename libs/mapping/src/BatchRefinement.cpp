@@ -28,7 +28,12 @@ namespace {
 constexpr double kFirstGain = 0.1, kLastGain = 0.01;
 constexpr double kUsualIterations = 12;  // of a round, at most; those for which the scale goes on are rare
 
-constexpr double kAccelerometerScale = 0.005;  // standard deviation of a calibrated one's: no residual shows it
+/// Standard deviation of an accelerometer's scale, which no residual shows: a calibrated one's, or what its axes are
+/// wrong by, where they show.
+double sigmaOfAccelerometer(const Eigen::Matrix3d& axes) {
+  constexpr double kCalibrated = 0.005;
+  return std::max(kCalibrated, axes.norm() / std::sqrt(static_cast<double>(axes.size())));
+}
 
 /// The groups of the lines that would be drawn now.
 std::vector<ParallelLines> parallelLines(const MapParams& params, const MapMaterial& material) {
@@ -368,7 +373,7 @@ void BatchRefinement::complete(const std::vector<PointRecord>& held_out, MapMate
       text("refined: keyframes moved by up to %.3f m; points without part in it fit to %.2f px (before %.2f)",
            report.moved_m, report.held_out_after_px, report.held_out_before_px);
   if (material.camera_errors.empty()) return;
-  report.scale_sigma = std::hypot(scaleSigma(material), kAccelerometerScale);
+  report.scale_sigma = std::hypot(scaleSigma(material), sigmaOfAccelerometer(report.axes));
   report.verdict += text("; the size of everything is known to %.1f %%", 100 * report.scale_sigma);
 }
 

@@ -530,6 +530,7 @@ TEST_F(BatchRefinementTest, WrongAxesOfTheAccelerometerAreFoundAndItsSamplesCorr
   EXPECT_TRUE(report.accepted) << report.verdict;
   EXPECT_LT((report.axes - axes).norm(), 0.5 * axes.norm()) << report.axes;
   EXPECT_NEAR(report.axes(1, 2), axes(1, 2), 0.003);  // of what varies most
+  EXPECT_GT(report.scale_sigma, report.axes.norm() / 3) << "nor is its scale known better than its axes";
   params_.axes_scale_sigma = params_.axes_angle_sigma_rad = 1e-9;
   EXPECT_LT(refine(held).axes.norm(), 1e-6);
   const auto spread = [](const MapMaterial& m) {
