@@ -154,16 +154,15 @@ ClockOffset findClockOffset(const std::vector<FrameTracks>& frames, const ImuBat
   const auto rmsOf = [focal](const EpipolarSystem& system) { return focal * std::sqrt(system.sum / system.weights); };
   found.rms_px = rmsOf(grid.at(place));
   if (!findMinimum(fit, place, grid, found)) return found;
-  const double spread = spread_s(fit.variance(grid.at(place)), grid.at(place).cost, grid);
-  const bool one_fits = spread < kMostSpread_s && found.sigma_s < kLeastCertain_s;
-  found.sigma_s = std::max(found.sigma_s, spread);
-  if (one_fits && !findReadout(place, fit, found)) fit.holdReadout();
+  const double range_sigma_s = spread_s(fit.variance(grid.at(place)), grid.at(place).cost, grid);
+  if (found.sigma_s < kLeastCertain_s && !findReadout(place, fit, found)) fit.holdReadout();
   const EpipolarSystem there = fit.at(found.offset_s);
   found.rms_px = rmsOf(there);
   found.bias_gyro = fit.bias();
   const double still_px = rmsOf(fit.withoutGyro()),
                turn_px = std::sqrt(std::max(0.0, still_px * still_px - found.rms_px * found.rms_px));
-  found.determined = one_fits && turn_px > kLeastTurn_px;
+  found.determined = range_sigma_s < kMostSpread_s && found.sigma_s < kLeastCertain_s && turn_px > kLeastTurn_px;
+  found.sigma_s = std::max(found.sigma_s, range_sigma_s);
   return found;
 }
 
