@@ -75,6 +75,8 @@ ClockSearch searchClock(TrackingStage& tracking, const Rig& rig, double stamp_si
   double next_try_s = kFirstTry_s, tried_s = 0;
   double turning_s = 0, compared_s = 0;  // when tracks were compared last
   std::size_t held_bytes = 0;
+  double vehicle_share = 0;  // of the image, when tracks were compared last
+  bool parts_grew = false;   // then: there may be more of them
   while (!(cancelled && cancelled())) {
     auto frame = tracking.next();
     if (!frame) break;
@@ -87,13 +89,17 @@ ClockSearch searchClock(TrackingStage& tracking, const Rig& rig, double stamp_si
     next_try_s = t_s < kLongest_s ? std::min(kLongest_s, kTryGrowth * next_try_s) : next_try_s + kTriesApart_s;
     if (t_s < kLongest_s || turning_s > compared_s + kNewTurning_s) {
       compared_s = turning_s;
+      for (FrameTracks& tracks : newest.tracks) tracking.leaveOutVehicle(tracks);
+      parts_grew = tracking.statistics().vehicle_share > vehicle_share;
+      vehicle_share = tracking.statistics().vehicle_share;
+      if (parts_grew) search.clock = ClockOffset();  // tracks on them had part in it
       const ClockOffset clock = findClockOffset(newest.tracks, newest.imu, rig);
       const bool knows_more = tried_s < kLongest_s;  // than the last try, whose tracks it has
       if (clock.determined && (knows_more || !search.clock.determined || clock.sigma_s < search.clock.sigma_s))
         search.clock = clock;
       tried_s = t_s;
     }
-    if (search.clock.determined && (t_s >= kLongest_s || search.clock.sigma_s < kGoodSigma_s)) break;
+    if (search.clock.determined && !parts_grew && (t_s >= kLongest_s || search.clock.sigma_s < kGoodSigma_s)) break;
     if (t_s >= kLongest_s && (turning_s >= kLongest_s || held_bytes > kMostHeld_bytes)) break;
   }
   weigh(stamp_sigma_s, search);

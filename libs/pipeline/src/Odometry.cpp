@@ -152,6 +152,7 @@ OdometryResult runOdometry(Recording& recording, const Configuration& configurat
   estimation.finish({options.threads, progressOf(RunStage::kLoops), progressOf(RunStage::kRefinement),
                      progressOf(RunStage::kDensification)});
   result.statistics.front_end = tracking.statistics();
+  result.found_mask = tracking.foundMask();
   addClock(search, result);
   if (const std::string noise = check.noiseRemark(); !noise.empty())
     result.remarks.push_back("noise of the IMU: " + noise);
@@ -161,6 +162,8 @@ OdometryResult runOdometry(Recording& recording, const Configuration& configurat
     result.remarks.push_back(axes);
   if (const std::string stamps = stampRemark(result.window_calibration); !stamps.empty())
     result.remarks.push_back(stamps);
+  if (const std::string vehicle = vehicleRemark(result.statistics.front_end.vehicle_share); !vehicle.empty())
+    result.remarks.push_back(vehicle);
   result.evidence = check.evidence();
   result.verdict = check.verdict(result.statistics, result.rig);
   result.contradiction = contradictionOf(result);

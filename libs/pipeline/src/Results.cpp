@@ -14,6 +14,19 @@ namespace lintel {
 
 namespace fs = std::filesystem;
 
+namespace {
+
+constexpr const char* kMaskFile = "mask.pgm";
+
+/// Netpbm's graymap, binary.
+std::string grayMapText(const GrayImage& image) {
+  std::string text = "P5\n" + std::to_string(image.width) + " " + std::to_string(image.height) + "\n255\n";
+  text.append(image.pixels.begin(), image.pixels.end());
+  return text;
+}
+
+}  // namespace
+
 std::vector<std::string> writeResults(const OdometryResult& result, const std::string& folder,
                                       const std::vector<std::string>& exports) {
   const fs::path out(folder);
@@ -27,6 +40,10 @@ std::vector<std::string> writeResults(const OdometryResult& result, const std::s
   if (result.refinement.accepted)
     AtomicFile::writeWhole((out / "trajectory_refined.tum").string(), trajectoryText(result.refined_trajectory));
   AtomicFile::writeWhole((out / "config.yaml").string(), result.map.configuration);
+  if (result.found_mask)
+    AtomicFile::writeWhole((out / kMaskFile).string(), grayMapText(*result.found_mask));
+  else if (!result.rig.mask)  // else it may be the one that was given
+    fs::remove(out / kMaskFile, error);
   writeMap(result.map, (out / "map.lintel").string());
   return writeExports(result.map, folder, exports);
 }

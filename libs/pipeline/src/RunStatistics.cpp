@@ -58,7 +58,8 @@ Json trackingJson(const FrontEndStatistics& f) {
             {"detections", f.lines.detections},
             {"merged", f.lines.merged},
             {"share_seen_in_10_frames", f.lines.lifetimes.shareOfAtLeast(10)},
-            {"median_length", f.lines.lifetimes.median()}}}};
+            {"median_length", f.lines.lifetimes.median()}}},
+          {"vehicle_share", f.vehicle_share}};
 }
 
 Json blindJson(const OdometryStatistics& s) {

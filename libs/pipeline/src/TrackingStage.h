@@ -30,6 +30,7 @@ class TrackingStage {
     if (!again_.empty()) {
       frame = std::move(again_.front());
       again_.pop_front();
+      leaveOutVehicle(frame.tracks);
       return frame;
     }
     if (ended_) return std::nullopt;
@@ -53,6 +54,10 @@ class TrackingStage {
   /// Frames that next() has given: it gives them once more, before those that follow.
   void giveAgain(std::deque<TrackedFrame> frames) { again_ = std::move(frames); }
 
+  /// Leaves out what is now known to move with the camera.
+  void leaveOutVehicle(FrameTracks& tracks) const { front_end_.leaveOutVehicle(tracks); }
+
+  std::shared_ptr<const GrayImage> foundMask() const { return front_end_.foundMask(); }
   const FrontEndStatistics& statistics() const { return front_end_.statistics(); }
 
  private:

@@ -7,7 +7,7 @@
 namespace lintel {
 namespace {
 
-using ::testing::HasSubstr, ::testing::IsEmpty;
+using ::testing::AllOf, ::testing::HasSubstr, ::testing::IsEmpty;
 
 Rig rigWith(double line_delay_s) {
   Rig rig;
@@ -61,6 +61,11 @@ TEST(StampRemark, SaysHowFarStampsAreOff) {
   EXPECT_THAT(stampRemark(estimate), IsEmpty());
   estimate.stamp_jitter_s = 0.0023;
   EXPECT_THAT(stampRemark(estimate), HasSubstr("off by 2.3 ms"));
+}
+
+TEST(VehicleRemark, SaysHowMuchOfTheImageAndWhereItIs) {
+  EXPECT_THAT(vehicleRemark(0), IsEmpty());
+  EXPECT_THAT(vehicleRemark(0.174), AllOf(HasSubstr("17 % of the image move with the camera"), HasSubstr("mask.pgm")));
 }
 
 }  // namespace

@@ -85,6 +85,26 @@ TEST(WriteResults, RefinedTrajectoryAndStatisticsOfAnEarlierRunDoNotStay) {
   EXPECT_TRUE(fs::exists(work / "out/trajectory.tum"));
 }
 
+TEST(WriteResults, AMaskThatWasFoundIsAGraymap) {
+  const test::TempFolder work;
+  OdometryResult result = refinedResult();
+  result.found_mask = std::make_shared<GrayImage>(GrayImage{3, 2, {255, 255, 255, 0, 0, 255}});
+  writeResults(result, work / "out");
+  EXPECT_EQ(bytesOf(work / "out/mask.pgm"), std::string("P5\n3 2\n255\n\xff\xff\xff\0\0\xff", 17));
+}
+
+TEST(WriteResults, AMaskOfAnEarlierRunStaysOnlyIfItMayHaveBeenGiven) {
+  const test::TempFolder work;
+  OdometryResult result = refinedResult();
+  std::ofstream(work / "mask.pgm") << "P5";
+  result.rig.mask = std::make_shared<GrayImage>();
+  writeResults(result, work / "");
+  EXPECT_TRUE(fs::exists(work / "mask.pgm"));
+  result.rig.mask.reset();
+  writeResults(result, work / "");
+  EXPECT_FALSE(fs::exists(work / "mask.pgm"));
+}
+
 TEST(WriteResults, AFolderThatCannotBeMadeIsNamed) {
   const test::TempFolder work;
   std::ofstream(work / "file") << "in the way";

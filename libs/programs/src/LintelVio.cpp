@@ -357,7 +357,7 @@ class LintelVio {
     const fs::path folder(output_);
     out_ << "written: " << (folder / "trajectory.tum").string() << ", trajectory_covariance.csv"
          << (result.refinement.accepted ? ", trajectory_refined.tum" : "")
-         << ", map.lintel, stats.json, config.yaml, report.html\n";
+         << ", map.lintel, stats.json, config.yaml, report.html" << (result.found_mask ? ", mask.pgm" : "") << "\n";
     for (const std::string& file : exported_) {
       std::string hint = viewerHint(fs::path(file).extension().string().substr(1));
       if (const std::size_t place = hint.find("FILE"); place != std::string::npos) hint.replace(place, 4, file);

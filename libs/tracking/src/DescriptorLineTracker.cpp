@@ -5,8 +5,8 @@
 
 namespace lintel {
 
-DescriptorLineTracker::DescriptorLineTracker(const Rig& rig, const LineTrackerParams& params)
-    : camera_(rig.camera, ImageMask(rig)), detector_(camera_, params), matcher_(camera_, params) {}
+DescriptorLineTracker::DescriptorLineTracker(const Rig& rig, const ImageMask& mask, const LineTrackerParams& params)
+    : camera_(rig.camera, mask), detector_(camera_, params), matcher_(camera_, params) {}
 
 void DescriptorLineTracker::process(const ImagePyramid& pyramid, const GyroPrediction& gyro, const PointMotion&,
                                     FrontEndStatistics& statistics) {

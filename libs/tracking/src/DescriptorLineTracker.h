@@ -14,7 +14,7 @@ namespace lintel {
 /// The baseline that optical flow is compared with.
 class DescriptorLineTracker : public LineTracker {
  public:
-  DescriptorLineTracker(const Rig& rig, const LineTrackerParams& params);
+  DescriptorLineTracker(const Rig& rig, const ImageMask& mask, const LineTrackerParams& params);
 
   void process(const ImagePyramid& pyramid, const GyroPrediction& gyro, const PointMotion& points,
                FrontEndStatistics& statistics) override;

@@ -22,16 +22,19 @@ constexpr double kWithoutFlow_px = 2;  ///< by which a line may be farther off w
 
 }  // namespace
 
-FlowLineTracker::FlowLineTracker(const Rig& rig, const LineTrackerParams& params)
+FlowLineTracker::FlowLineTracker(const Rig& rig, const ImageMask& mask, const LineTrackerParams& params)
     : params_(params),
-      camera_(rig.camera, ImageMask(rig)),
+      camera_(rig.camera, mask),
       detector_(camera_, params),
       flow_(camera_, params),
       merger_(camera_, params),
+      steps_(camera_),
       refiner_(camera_) {}
 
 void FlowLineTracker::process(const ImagePyramid& pyramid, const GyroPrediction& gyro, const PointMotion& points,
                               FrontEndStatistics& statistics) {
+  followed_.clear();
+  steps_.turn(gyro.R_c1_c0());
   if (pyramid.hasPrevious()) {
     StageTimer timer(statistics, "lines_flow");
     predict(pyramid, gyro, points, statistics.lines);
@@ -88,6 +91,7 @@ void FlowLineTracker::predict(const ImagePyramid& pyramid, const GyroPrediction&
 
 std::vector<ImageLine> FlowLineTracker::mergeDetections(const ImagePyramid& pyramid, FrontEndStatistics& statistics) {
   const std::vector<ImageLine> detected = detector_.detect(pyramid);
+  followed_ = steps_.followed(detected);
   std::vector<ImageLine> predicted;
   for (const Track& track : tracks_) predicted.push_back(track.line);
   MergedLines merged = merger_.merge(predicted, detected);

@@ -8,6 +8,7 @@
 #include "LineDetector.h"
 #include "LineFlow.h"
 #include "LineMerger.h"
+#include "LineSteps.h"
 #include "LineTracker.h"
 
 namespace lintel {
@@ -15,10 +16,11 @@ namespace lintel {
 /// Mode `flow`: predict by optical flow, merge with detections when there are any, lay the result on the image's edges.
 class FlowLineTracker : public LineTracker {
  public:
-  FlowLineTracker(const Rig& rig, const LineTrackerParams& params);
+  FlowLineTracker(const Rig& rig, const ImageMask& mask, const LineTrackerParams& params);
 
   void process(const ImagePyramid& pyramid, const GyroPrediction& gyro, const PointMotion& points,
                FrontEndStatistics& statistics) override;
+  std::vector<FollowedPoint> followed() const override { return followed_; }
   const std::vector<LineObservation>& lines() const override { return observations_; }
 
  private:
@@ -58,9 +60,11 @@ class FlowLineTracker : public LineTracker {
   LineDetector detector_;
   LineFlow flow_;
   LineMerger merger_;
+  LineSteps steps_;
   EdgeRefiner refiner_;
   std::vector<Track> tracks_;  ///< by age: ascending id, then those without one
   std::vector<LineObservation> observations_;
+  std::vector<FollowedPoint> followed_;
   TrackId next_id_ = 1;
   int frames_since_detection_ = 0;
 };

@@ -10,9 +10,9 @@ constexpr double kBits = 256;  ///< of a descriptor
 
 }  // namespace
 
-FourStepLineTracker::FourStepLineTracker(const Rig& rig, const LineTrackerParams& params)
+FourStepLineTracker::FourStepLineTracker(const Rig& rig, const ImageMask& mask, const LineTrackerParams& params)
     : params_(params),
-      camera_(rig.camera, ImageMask(rig)),
+      camera_(rig.camera, mask),
       detector_(camera_, params),
       matcher_(camera_, params),
       flow_(camera_, params),

@@ -23,7 +23,7 @@ namespace lintel {
 /// the line's former length that is left.
 class FourStepLineTracker : public LineTracker {
  public:
-  FourStepLineTracker(const Rig& rig, const LineTrackerParams& params);
+  FourStepLineTracker(const Rig& rig, const ImageMask& mask, const LineTrackerParams& params);
 
   void process(const ImagePyramid& pyramid, const GyroPrediction& gyro, const PointMotion& points,
                FrontEndStatistics& statistics) override;

@@ -55,8 +55,10 @@ struct FrontEnd::Impl {
       : rig(rig_in),
         pyramid(params.pyramid, std::max(params.points.window_px, params.lines.window_px)),
         gyro(rig, params.points.initial_gyro_bias_sigma),
-        points(rig, params.points),
-        lines(params.features != "points" ? makeLineTracker(rig, params.lines) : nullptr) {}
+        mask(rig),
+        vehicle(rig.camera),
+        points(rig, mask, params.points),
+        lines(params.features != "points" ? makeLineTracker(rig, mask, params.lines) : nullptr) {}
 
   void track(const Frame& frame, const ImuBatch& imu_since_last) {
     StageTimer total(statistics, "total");
@@ -70,11 +72,27 @@ struct FrontEnd::Impl {
     turn = points.turn().value_or(CameraTurn());
     if (points.turn()) turn.from_ns = last_t_ns, turn.to_ns = frame.t_ns;
     if (lines) lines->process(pyramid, gyro, points.motion(), statistics);
+    leaveOutVehicle();
+  }
+
+  /// From the next frame on.
+  void leaveOutVehicle() {
+    StageTimer timer(statistics, "vehicle");
+    std::vector<FollowedPoint> followed = points.followed();
+    if (lines) {
+      const std::vector<FollowedPoint> on_lines = lines->followed();
+      followed.insert(followed.end(), on_lines.begin(), on_lines.end());
+    }
+    if (!vehicle.observe(followed)) return;
+    mask.cover(vehicle.area());
+    statistics.vehicle_share = vehicle.share();
   }
 
   Rig rig;
   ImagePyramid pyramid;
   GyroPrediction gyro;
+  ImageMask mask;  ///< shared with the trackers
+  VehicleParts vehicle;
   PointTracker points;
   std::unique_ptr<LineTracker> lines;  ///< null: points only
   FrontEndStatistics statistics;
@@ -107,6 +125,31 @@ FrameTracks FrontEnd::process(const Frame& frame, const ImuBatch& imu_since_last
   tracks.points = m.points.points();
   if (m.lines) tracks.lines = m.lines->lines();
   return tracks;
+}
+
+std::shared_ptr<const GrayImage> FrontEnd::foundMask() const {
+  const Impl& m = *impl_;
+  if (m.vehicle.area().empty()) return nullptr;
+  auto mask = std::make_shared<GrayImage>();
+  mask->width = m.rig.camera.width;
+  mask->height = m.rig.camera.height;
+  for (int y = 0; y < mask->height; ++y)
+    for (int x = 0; x < mask->width; ++x)
+      mask->pixels.push_back(m.vehicle.area().at<unsigned char>(y, x) != 0 ? 0 : 255);
+  if (m.rig.mask)
+    for (std::size_t i = 0; i < mask->pixels.size(); ++i)
+      mask->pixels[i] = std::min(mask->pixels[i], m.rig.mask->pixels[i]);
+  return mask;
+}
+
+void FrontEnd::leaveOutVehicle(FrameTracks& tracks) const {
+  const ImageMask& mask = impl_->mask;
+  const auto isPoint = [&](const PointObservation& o) { return mask.covers(o.px); };
+  const auto isLine = [&](const LineObservation& o) {
+    return mask.covers(0.5 * (o.start_px + o.end_px)) || (mask.covers(o.start_px) && mask.covers(o.end_px));
+  };
+  tracks.points.erase(std::remove_if(tracks.points.begin(), tracks.points.end(), isPoint), tracks.points.end());
+  tracks.lines.erase(std::remove_if(tracks.lines.begin(), tracks.lines.end(), isLine), tracks.lines.end());
 }
 
 CameraTurn FrontEnd::turn() const { return impl_->turn; }

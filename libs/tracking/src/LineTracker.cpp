@@ -21,10 +21,10 @@ LineObservation lineObservation(const LineCamera& camera, TrackId id, const Imag
   return observation;
 }
 
-std::unique_ptr<LineTracker> makeLineTracker(const Rig& rig, const LineTrackerParams& params) {
-  if (params.mode == "descriptor") return std::make_unique<DescriptorLineTracker>(rig, params);
-  if (params.mode == "four_steps") return std::make_unique<FourStepLineTracker>(rig, params);
-  return std::make_unique<FlowLineTracker>(rig, params);
+std::unique_ptr<LineTracker> makeLineTracker(const Rig& rig, const ImageMask& mask, const LineTrackerParams& params) {
+  if (params.mode == "descriptor") return std::make_unique<DescriptorLineTracker>(rig, mask, params);
+  if (params.mode == "four_steps") return std::make_unique<FourStepLineTracker>(rig, mask, params);
+  return std::make_unique<FlowLineTracker>(rig, mask, params);
 }
 
 }  // namespace lintel

@@ -23,6 +23,9 @@ class LineTracker {
   virtual void process(const ImagePyramid& pyramid, const GyroPrediction& gyro, const PointMotion& points,
                        FrontEndStatistics& statistics) = 0;
 
+  /// What places along detected lines did since the detection before, across the lines; empty without a detection.
+  virtual std::vector<FollowedPoint> followed() const { return {}; }
+
   /// Lines of the current frame, ascending id.
   virtual const std::vector<LineObservation>& lines() const = 0;
 };
@@ -33,6 +36,6 @@ LineObservation lineObservation(const LineCamera& camera, TrackId id, const Imag
                                 int track_length, bool detected);
 
 /// The tracker of params.mode.
-std::unique_ptr<LineTracker> makeLineTracker(const Rig& rig, const LineTrackerParams& params);
+std::unique_ptr<LineTracker> makeLineTracker(const Rig& rig, const ImageMask& mask, const LineTrackerParams& params);
 
 }  // namespace lintel

@@ -29,9 +29,9 @@ TwoViewParams twoViewParams(const Camera& camera, double threshold_px) {
 
 }  // namespace
 
-PointTracker::PointTracker(const Rig& rig, const PointTrackerParams& params)
+PointTracker::PointTracker(const Rig& rig, const ImageMask& mask, const PointTrackerParams& params)
     : camera_(rig.camera),
-      mask_(rig),
+      mask_(mask),
       params_(params),
       detector_(mask_, params),
       drift_(params.drift_frames, twoViewParams(rig.camera, params.drift_px)),
@@ -54,10 +54,12 @@ std::vector<cv::Point2f> PointTracker::pixels() const {
 
 void PointTracker::process(const ImagePyramid& pyramid, GyroPrediction& gyro, FrontEndStatistics& statistics) {
   flow_.clear();
+  followed_.clear();
   turn_.reset();
   if (pyramid.hasPrevious() && !points_.empty()) {
     StageTimer timer(statistics, "points_klt");
     Followed followed = follow(pyramid, gyro, statistics.points);
+    noteFollowed(followed, gyro);
     startAnchors(pyramid, followed);
     rejectByEpipolarGeometry(followed, gyro, statistics.points);
     rejectCrowded(followed, statistics.points);
@@ -143,6 +145,14 @@ PointTracker::Followed PointTracker::follow(const ImagePyramid& pyramid, const G
     statistics.lost_backward += outcome == Outcome::kNotReturned;
   }
   return followed;
+}
+
+void PointTracker::noteFollowed(const Followed& followed, const GyroPrediction& gyro) {
+  for (std::size_t i = 0; i < points_.size(); ++i) {
+    if (followed.outcome[i] != Outcome::kTracked) continue;
+    const cv::Point2f from(static_cast<float>(points_[i].px.x()), static_cast<float>(points_[i].px.y()));
+    followed_.push_back({from, followed.px[i], gyro.turnedPixel(camera_, points_[i].ray)});
+  }
 }
 
 void PointTracker::startAnchors(const ImagePyramid& pyramid, const Followed& followed) {

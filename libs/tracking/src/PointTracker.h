@@ -16,6 +16,7 @@
 #include "PointsTurn.h"
 #include "StepTranslation.h"
 #include "TwoViewMotion.h"
+#include "VehicleParts.h"
 #include "lintel/core/FrameTracks.h"
 #include "lintel/core/Rig.h"
 #include "lintel/tracking/FrontEndParams.h"
@@ -39,13 +40,16 @@ struct PointMotion {
 /// KLT tracks of corners from frame to frame. A lost point is not detected again under its identity.
 class PointTracker {
  public:
-  PointTracker(const Rig& rig, const PointTrackerParams& params);
+  /// Nothing is followed or detected where `mask` covers the image.
+  PointTracker(const Rig& rig, const ImageMask& mask, const PointTrackerParams& params);
 
   /// Follows the points into the pyramid's current frame, corrects `gyro` by their motion, and adds new ones.
   void process(const ImagePyramid& pyramid, GyroPrediction& gyro, FrontEndStatistics& statistics);
 
   /// Points of the current frame, ascending id.
   const std::vector<PointObservation>& points() const { return points_; }
+  /// The last step of all that optical flow followed, also what geometry rejected.
+  const std::vector<FollowedPoint>& followed() const { return followed_; }
   PointMotion motion() const { return {flow_, step_}; }
 
   /// How the camera turned since the frame before, by the points alone; without times.
@@ -63,6 +67,7 @@ class PointTracker {
   void followFrom(const ImagePyramid& pyramid, const std::vector<std::size_t>& indices, int levels, Followed& followed);
   void followBack(const ImagePyramid& pyramid, const std::vector<std::size_t>& indices, Followed& followed) const;
   Followed follow(const ImagePyramid& pyramid, const GyroPrediction& gyro, PointStatistics& statistics);
+  void noteFollowed(const Followed& followed, const GyroPrediction& gyro);
   void startAnchors(const ImagePyramid& pyramid, const Followed& followed);
   void rejectByEpipolarGeometry(Followed& followed, GyroPrediction& gyro, PointStatistics& statistics);
   void rejectCrowded(Followed& followed, PointStatistics& statistics) const;
@@ -82,6 +87,7 @@ class PointTracker {
   PatchAnchors anchors_;
   std::vector<PointObservation> points_;
   std::vector<PointFlow> flow_;
+  std::vector<FollowedPoint> followed_;
   StepTranslation step_;
   std::optional<CameraTurn> turn_;
   std::map<TrackId, cv::Point2f> residuals_;  ///< of the last step

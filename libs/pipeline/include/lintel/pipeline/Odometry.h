@@ -4,6 +4,7 @@
 #include <array>
 #include <functional>
 #include <map>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -77,6 +78,7 @@ struct OdometryResult {
   Rig rig;                                 ///< as refined
   CalibrationEstimate window_calibration;  ///< as the last window had it, before any batch refinement
   double time_offset_s = 0;
+  std::shared_ptr<const GrayImage> found_mask;  ///< FrontEnd::foundMask; null: nothing moves with the camera
   OdometryStatistics statistics;
   std::vector<std::string> remarks;        ///< what was corrected of the recording's own data, in words
   std::map<std::string, double> evidence;  ///< what the checks of the run have measured, by name

@@ -29,6 +29,13 @@ class FrontEnd {
   /// the rig's size, or the frame is not later than the one before.
   FrameTracks process(const Frame& frame, const ImuBatch& imu_since_last);
 
+  /// A mask (Rig.h) that leaves out what was found to move with the camera, as well as what the rig's leaves out; null
+  /// as long as nothing was found.
+  std::shared_ptr<const GrayImage> foundMask() const;
+
+  /// Takes out of an earlier frame's features those where something has been found since that moves with the camera.
+  void leaveOutVehicle(FrameTracks& tracks) const;
+
   /// How the camera turned from the frame before the last one to the last one, by its points alone; unknown where too
   /// few say the same.
   CameraTurn turn() const;

@@ -63,6 +63,7 @@ struct LineStatistics {
 struct FrontEndStatistics {
   std::int64_t frames = 0;
   std::int64_t frames_without_gyro = 0;
+  double vehicle_share = 0;  ///< of the image, covered by what was found to move with the camera
   PointStatistics points;
   LineStatistics lines;
   std::map<std::string, StageTimes> stages;  ///< by name of the stage
