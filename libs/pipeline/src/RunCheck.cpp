@@ -61,6 +61,7 @@ void RunCheck::add(const TrackedFrame& frame, const WindowUpdate& update) {
   if (update.status == EstimatorStatus::kTracking) bias_gyro_ = update.bias.gyro;
   accelerometer_.add(imu, bias_gyro_);
   noise_.add(imu);
+  sigma_.add(update);
   watchSpeed(update);
   watchImu(update);
   watchFailures(update);
@@ -114,6 +115,7 @@ std::map<std::string, double> RunCheck::evidence() const {
     }
   values["accelerometer_axes_misfit"] = accelerometer_.axesMisfit();
   values["largest_acceleration_m_s2"] = largest_acceleration_;
+  values["position_sigma"] = sigma_.worst();
   values["images_blank"] = images_.blankShare();
   values["images_repeated"] = images_.repeatedShare();
   const auto quantiles = [&](const std::string& name, std::vector<double> sample) {
@@ -192,7 +194,7 @@ std::string RunCheck::verdict(const OdometryStatistics& s, const Rig& estimated)
   if (std::string fault = accelerometer_.sizeFault(); !fault.empty()) return fault;
   const bool no_pose = s.frames_with_pose == 0;
   std::string fault = no_pose ? "no pose was found (" + s.last_wait + ")" : symptom(s, estimated);
-  if (fault.empty()) return fault;
+  if (fault.empty()) return sigma_.fault();
   const std::string likely = cause(s);
   if (!likely.empty()) return fault + "; " + likely;
   return no_pose ? "" : fault + "; check that IMU and images belong together, T_BS of both, and the calibration";

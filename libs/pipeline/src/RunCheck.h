@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "ImageCheck.h"
+#include "SigmaCheck.h"
 #include "TrackingStage.h"
 #include "lintel/core/Rig.h"
 #include "lintel/inertial/AccelerometerCheck.h"
@@ -66,6 +67,7 @@ class RunCheck {
   NoiseMeter noise_;
   TurnCheck turns_;
   ImageCheck images_;
+  SigmaCheck sigma_;
   std::optional<InertialState> keyframe_;  ///< the last one that has left the window
   std::vector<double> imu_misfits_;        ///< squared, of nine degrees of freedom, between keyframes
   std::vector<double> accel_misfits_;      ///< of six, without the rotation
