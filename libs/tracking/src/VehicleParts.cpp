@@ -43,10 +43,10 @@ VehicleParts::Square& VehicleParts::squareAt(const cv::Point2f& px) {
 }
 
 bool VehicleParts::isNearPart(const cv::Point2f& px) const {
-  return !area_.empty() &&
-         cv::countNonZero(area_(cv::Rect(static_cast<int>(px.x) - kNearPart_px, static_cast<int>(px.y) - kNearPart_px,
-                                         2 * kNearPart_px, 2 * kNearPart_px) &
-                                cv::Rect({0, 0}, image_))) > 0;
+  if (area_.empty()) return false;
+  const cv::Rect around(static_cast<int>(px.x) - kNearPart_px, static_cast<int>(px.y) - kNearPart_px, 2 * kNearPart_px,
+                        2 * kNearPart_px);
+  return cv::countNonZero(area_(around & cv::Rect({0, 0}, image_))) > 0;
 }
 
 bool VehicleParts::isPart(const Square& square, const cv::Point2f& px) const {
@@ -62,7 +62,10 @@ double VehicleParts::share() const {
 
 bool VehicleParts::observe(const std::vector<FollowedPoint>& points) {
   const auto turnOf = [](const FollowedPoint& p) { return p.turned - p.from; };
-  const auto turns = [&](const FollowedPoint& p) { return cv::norm(turnOf(p)) >= kTurn_px; };
+  const auto turns = [&](const FollowedPoint& p) {
+    const double turn_px = cv::norm(turnOf(p));
+    return turn_px >= kTurn_px && turn_px < image_.width;  // else out of view
+  };
   const auto turning = std::count_if(points.begin(), points.end(), [&](const FollowedPoint& p) {
     return turns(p) && cv::norm(p.to - p.turned) <= kLikeTurn * cv::norm(turnOf(p));
   });

@@ -68,6 +68,15 @@ TEST_F(VehiclePartsTest, SlowTurnsSayNothing) {
   EXPECT_FALSE(turn({-1.5, 0}, 50));
 }
 
+TEST_F(VehiclePartsTest, ATurnOutOfViewSaysNothing) {
+  turn({5, 1}, 4);
+  for (int i = 0; i < 4; ++i) {
+    std::vector<FollowedPoint> points = sceneThatTurns({-5, 1});
+    points.push_back({kHood, kHood, {-1e4f, -1e4f}});
+    EXPECT_FALSE(parts_.observe(points));
+  }
+}
+
 TEST_F(VehiclePartsTest, WhereNothingMovesTheGyroscopeIsWrong) {
   for (int i = 0; i < 40; ++i) {
     const cv::Point2f turn(i % 8 < 4 ? 5 : -5, 0);
