@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// patch_flow FOLDER: CPU time and error of following patches with PatchFlow and with OpenCV's calcOpticalFlowPyrLK, on
-// the images of a folder (an EuRoC recording's mav0/cam0/data). Each image is followed into itself moved by a known
-// rotation and shift, with other noise, brightness and contrast, so that the true places are known. Both get the same
-// pyramids; the time is that of the pyramids of one image, with the derivatives that OpenCV needs, and of the flow.
+// patch_flow FOLDER [CONTRAST]: CPU time and error of following patches with PatchFlow and with OpenCV's
+// calcOpticalFlowPyrLK, on the images of a folder (an EuRoC recording's mav0/cam0/data). Each image is followed into
+// itself moved by a known rotation and shift, with other noise, brightness and contrast (CONTRAST times what it was,
+// 0.97), so that the true places are known. Both get the same pyramids; the time is that of the pyramids of one image,
+// with the derivatives that OpenCV needs, and of the flow.
 #include <algorithm>
 #include <cstdio>
 #include <filesystem>
@@ -32,10 +33,10 @@ struct Measured {
   std::size_t followed = 0, all = 0;
 };
 
-cv::Mat moved(const cv::Mat& image, const cv::Matx23d& motion, cv::RNG& random) {
+cv::Mat moved(const cv::Mat& image, const cv::Matx23d& motion, double contrast, cv::RNG& random) {
   cv::Mat result, noise(image.size(), CV_16S);
   cv::warpAffine(image, result, motion, image.size(), cv::INTER_CUBIC, cv::BORDER_REFLECT_101);
-  result.convertTo(result, CV_16S, 0.97, 4);
+  result.convertTo(result, CV_16S, contrast, 4);
   random.fill(noise, cv::RNG::NORMAL, 0, 2);
   result += noise;
   result.convertTo(result, CV_8U);
@@ -106,7 +107,8 @@ void print(const char* name, const Measured& measured) {
 }
 
 int run(int argc, char** argv) {
-  if (argc != 2) throw std::invalid_argument("usage: patch_flow FOLDER");
+  if (argc != 2 && argc != 3) throw std::invalid_argument("usage: patch_flow FOLDER [CONTRAST]");
+  const double contrast = argc == 3 ? std::stod(argv[2]) : 0.97;
   cv::setNumThreads(1);
   std::vector<std::filesystem::path> paths;
   for (const auto& entry : std::filesystem::directory_iterator(argv[1])) paths.push_back(entry.path());
@@ -129,7 +131,7 @@ int run(int argc, char** argv) {
         px.push_back(corner);
         truth.emplace_back(static_cast<float>(to[0]), static_cast<float>(to[1]));
       }
-      if (!px.empty()) measure(job, image, moved(image, motion, random), px, truth, own, opencv);
+      if (!px.empty()) measure(job, image, moved(image, motion, contrast, random), px, truth, own, opencv);
     }
     std::printf("%s, %zu images, medians\n", job.name, paths.size());
     print("PatchFlow", own);

@@ -73,6 +73,7 @@ class Estimator::Impl {
   }
 
  private:
+  bool entersWindow(const FrameTracks& tracks);
   bool appendImu(const FrameTracks& tracks, const ImuBatch& imu);
   WindowUpdate skipFrame(const FrameTracks& tracks);
   void addFrame(const FrameTracks& tracks);
@@ -116,7 +117,9 @@ class Estimator::Impl {
   std::optional<WindowCovariance> sigma_;                        // of the last solve
   StateCovariance newest_covariance_ = StateCovariance::Zero();  // of the newest window frame
   bool tracking_ = false;
-  std::uint64_t frames_seen_ = 0, poses_ = 0;
+  int frames_since_entry_ = framesAtRate(params_.every_nth_frame, rig_.camera_rate_hz);  // into the window
+  bool dark_ = false;                                                                    // the newest one shows nothing
+  std::uint64_t poses_ = 0;
   FrameId next_frame_id_ = 0;
   ImuBatch pending_imu_;  // since the newest window frame
   std::int64_t newest_t_ns_ = 0;
@@ -135,8 +138,7 @@ WindowUpdate Estimator::Impl::process(const FrameTracks& tracks, const ImuBatch&
   WindowUpdate update;
   update.t_ns = tracks.t_ns;
   const bool imu_ok = appendImu(tracks, imu);
-  const bool enters =
-      frames_seen_++ % static_cast<std::uint64_t>(framesAtRate(params_.every_nth_frame, rig_.camera_rate_hz)) == 0;
+  const bool enters = entersWindow(tracks);
   if (!imu_ok && !window_.frames.empty()) {
     fail(Failure::kInterrupted, "the IMU has a gap", update);
   } else if (!enters) {
@@ -148,6 +150,18 @@ WindowUpdate Estimator::Impl::process(const FrameTracks& tracks, const ImuBatch&
     tracking_ ? track(update) : initialise(update);
   }
   return update;
+}
+
+/// Every n-th frame, and instead of one that shows nothing the next that does. When there is none for a while, darkness
+/// is what there is to be seen.
+bool Estimator::Impl::entersWindow(const FrameTracks& tracks) {
+  constexpr std::int64_t kWaits_ns = 500'000'000;
+  if (++frames_since_entry_ < framesAtRate(params_.every_nth_frame, rig_.camera_rate_hz)) return false;
+  const bool shows_nothing = tracks.points.empty() && tracks.lines.empty();
+  if (shows_nothing && !dark_ && !window_.frames.empty() && tracks.t_ns - newest_t_ns_ < kWaits_ns) return false;
+  dark_ = shows_nothing;
+  frames_since_entry_ = 0;
+  return true;
 }
 
 /// False when the samples do not cover the time since the frame before.

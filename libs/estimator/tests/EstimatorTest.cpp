@@ -485,16 +485,30 @@ TrackedFlight darkened(TrackedFlight flight, std::size_t from, std::size_t frame
   return flight;
 }
 
+TEST(Estimator, AFrameThatShowsNothingIsLeftToTheNextOne) {
+  TrackedFlight flight = fly(ImuSimulatorParams{}, tracksFor(6, 0.3));
+  const std::size_t every = static_cast<std::size_t>(EstimatorParams{}.every_nth_frame);
+  const std::size_t step = 5 * every + 1;  // the one after a dark frame enters the window, and every n-th from it on
+  for (std::size_t k = 60; k < flight.sim.frames.size(); k += step) flight = darkened(flight, k, 1);
+  const auto updates = run(flight);
+  EXPECT_EQ(lostOf(updates), 0);
+  for (std::size_t k = 60; k + 1 < updates.size(); k += step) {
+    EXPECT_EQ(updates[k].status, EstimatorStatus::kPropagated) << k;
+    EXPECT_EQ(updates[k + 1].status, EstimatorStatus::kTracking) << k;
+  }
+  EXPECT_LT(positionError(updates, flight), 0.03);
+}
+
 TEST(Estimator, BlindnessIsBridgedForAWhileAndThenAFailure) {
-  const TrackedFlight flight = fly(ImuSimulatorParams{}, tracksFor(5.5, 0.3));
-  const std::size_t dark = 60;
+  const TrackedFlight flight = fly(ImuSimulatorParams{}, tracksFor(6, 0.3));
+  const std::size_t dark = 60, waits = 10;  // half a second for an image that shows something
   EstimatorParams params;
   params.failure.max_blind_frames = 20;
   const auto moment = run(darkened(flight, dark, 6), params);
   EXPECT_EQ(lostOf(moment), 0);
   EXPECT_TRUE(moment[dark + 5].hasPose());
-  const auto longer =
-      run(darkened(flight, dark, 2 * static_cast<std::size_t>(params.failure.max_blind_frames) + 6), params);
+  const std::size_t frames = waits + 2 * static_cast<std::size_t>(params.failure.max_blind_frames) + 6;
+  const auto longer = run(darkened(flight, dark, frames), params);
   ASSERT_GE(lostOf(longer), 1);
   for (const WindowUpdate& u : longer)
     if (u.status == EstimatorStatus::kLost) {

@@ -59,16 +59,4 @@ std::string stampRemark(const CalibrationEstimate& estimate) {
   return text;
 }
 
-std::string vehicleRemark(double share) {
-  if (!(share > 0)) return {};
-  char text[400];
-  std::snprintf(
-      text, sizeof text,
-      "%.0f %% of the image move with the camera (a part of the vehicle, a hand, the rim of the lens): left out "
-      "since they were found, when the camera turned to and fro; look at mask.pgm beside the trajectory, where "
-      "they are black: given as --mask it leaves them out from the first image on",
-      std::max(1.0, 100 * share));
-  return text;
-}
-
 }  // namespace lintel

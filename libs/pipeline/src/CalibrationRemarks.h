@@ -20,7 +20,4 @@ std::string axesRemark(const Rig& given, const RefinementReport& refinement);
 /// What it found about the images' stamps: that they are off, each by its own amount. Empty: nothing.
 std::string stampRemark(const CalibrationEstimate& estimate);
 
-/// What tracking found to move with the camera: `share` of the image. Empty: nothing.
-std::string vehicleRemark(double share);
-
 }  // namespace lintel

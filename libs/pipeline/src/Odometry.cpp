@@ -13,6 +13,7 @@
 #include "CalibrationRemarks.h"
 #include "ClockSearch.h"
 #include "EstimationStage.h"
+#include "ImageRemarks.h"
 #include "RefinedComparison.h"
 #include "RunCheck.h"
 #include "TrackingStage.h"
@@ -164,6 +165,8 @@ OdometryResult runOdometry(Recording& recording, const Configuration& configurat
     result.remarks.push_back(stamps);
   if (const std::string vehicle = vehicleRemark(result.statistics.front_end.vehicle_share); !vehicle.empty())
     result.remarks.push_back(vehicle);
+  if (const std::string images = imagesRemark(result.statistics.front_end); !images.empty())
+    result.remarks.push_back(images);
   result.evidence = check.evidence();
   result.verdict = check.verdict(result.statistics, result.rig);
   result.contradiction = contradictionOf(result);

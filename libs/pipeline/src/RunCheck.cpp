@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstdio>
 
+#include "ImageRemarks.h"
 #include "lintel/core/Quantiles.h"
 
 namespace lintel {
@@ -57,7 +58,6 @@ std::string calibrationFault(const Rig& given, const Rig& estimated) {
 void RunCheck::add(const TrackedFrame& frame, const WindowUpdate& update) {
   const ImuBatch& imu = frame.step.imu;
   turns_.add(imu, frame.turn);
-  images_.add(frame.step);
   if (update.status == EstimatorStatus::kTracking) bias_gyro_ = update.bias.gyro;
   accelerometer_.add(imu, bias_gyro_);
   noise_.add(imu);
@@ -116,8 +116,6 @@ std::map<std::string, double> RunCheck::evidence() const {
   values["accelerometer_axes_misfit"] = accelerometer_.axesMisfit();
   values["largest_acceleration_m_s2"] = largest_acceleration_;
   values["position_sigma"] = sigma_.worst();
-  values["images_blank"] = images_.blankShare();
-  values["images_repeated"] = images_.repeatedShare();
   const auto quantiles = [&](const std::string& name, std::vector<double> sample) {
     if (sample.empty()) return;
     values[name + "_median"] = upperQuantile(sample, 0.5);
@@ -170,7 +168,7 @@ std::string RunCheck::accelFault() const {
 }
 
 std::string RunCheck::cause(const OdometryStatistics& s) const {
-  if (std::string fault = images_.fault(); !fault.empty()) return fault;
+  if (std::string fault = imageFault(s.front_end); !fault.empty()) return fault;
   if (std::string fault = turns_.fault(Suspicion::kSome, clock_offset_s_); !fault.empty()) return fault;
   if (std::string fault = accelerometer_.axesFault(); !fault.empty()) return fault;
   if (const double lever_m = rig_.T_b_c.p.norm(); lever_m > kLongLever_m) {
@@ -189,8 +187,10 @@ std::string RunCheck::cause(const OdometryStatistics& s) const {
 
 std::string RunCheck::verdict(const OdometryStatistics& s, const Rig& estimated) const {
   // The gyroscope first: what the accelerometer shows is turned by it.
-  if (const std::string fault = turns_.fault(Suspicion::kNone, clock_offset_s_); !fault.empty())
-    return images_.fault().empty() ? fault : images_.fault() + "; " + fault;
+  if (const std::string fault = turns_.fault(Suspicion::kNone, clock_offset_s_); !fault.empty()) {
+    const std::string images = imageFault(s.front_end);
+    return images.empty() ? fault : images + "; " + fault;
+  }
   if (std::string fault = accelerometer_.sizeFault(); !fault.empty()) return fault;
   const bool no_pose = s.frames_with_pose == 0;
   std::string fault = no_pose ? "no pose was found (" + s.last_wait + ")" : symptom(s, estimated);

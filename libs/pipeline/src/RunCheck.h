@@ -7,7 +7,6 @@
 #include <string>
 #include <vector>
 
-#include "ImageCheck.h"
 #include "SigmaCheck.h"
 #include "TrackingStage.h"
 #include "lintel/core/Rig.h"
@@ -66,7 +65,6 @@ class RunCheck {
   AccelerometerCheck accelerometer_;
   NoiseMeter noise_;
   TurnCheck turns_;
-  ImageCheck images_;
   SigmaCheck sigma_;
   std::optional<InertialState> keyframe_;  ///< the last one that has left the window
   std::vector<double> imu_misfits_;        ///< squared, of nine degrees of freedom, between keyframes

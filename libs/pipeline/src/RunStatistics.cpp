@@ -59,6 +59,8 @@ Json trackingJson(const FrontEndStatistics& f) {
             {"merged", f.lines.merged},
             {"share_seen_in_10_frames", f.lines.lifetimes.shareOfAtLeast(10)},
             {"median_length", f.lines.lifetimes.median()}}},
+          {"images_without_contrast", f.images_without_contrast},
+          {"images_repeated", f.images_repeated},
           {"vehicle_share", f.vehicle_share}};
 }
 

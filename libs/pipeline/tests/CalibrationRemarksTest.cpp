@@ -63,10 +63,5 @@ TEST(StampRemark, SaysHowFarStampsAreOff) {
   EXPECT_THAT(stampRemark(estimate), HasSubstr("off by 2.3 ms"));
 }
 
-TEST(VehicleRemark, SaysHowMuchOfTheImageAndWhereItIs) {
-  EXPECT_THAT(vehicleRemark(0), IsEmpty());
-  EXPECT_THAT(vehicleRemark(0.174), AllOf(HasSubstr("17 % of the image move with the camera"), HasSubstr("mask.pgm")));
-}
-
 }  // namespace
 }  // namespace lintel

@@ -65,7 +65,10 @@ void FlowLineTracker::end(const Track& track, std::int64_t& reason, LineStatisti
 void FlowLineTracker::predict(const ImagePyramid& pyramid, const GyroPrediction& gyro, const PointMotion& points,
                               LineStatistics& statistics) {
   std::vector<CarriedLine> lines;
-  for (const Track& track : tracks_) lines.push_back({track.line, track.motion, track.depth});
+  for (Track& track : tracks_) {
+    if (track.motion) *track.motion *= gyro.stepRatio();
+    lines.push_back({track.line, track.motion, track.depth});
+  }
   const auto predicted = flow_.predict(lines, pyramid, gyro, points);
   std::vector<Track> kept;
   for (std::size_t i = 0; i < tracks_.size(); ++i) {

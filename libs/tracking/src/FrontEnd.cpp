@@ -7,6 +7,7 @@
 #include <string>
 
 #include "GyroPrediction.h"
+#include "ImageCheck.h"
 #include "ImagePyramid.h"
 #include "LineTracker.h"
 #include "PointTracker.h"
@@ -55,24 +56,38 @@ struct FrontEnd::Impl {
       : rig(rig_in),
         pyramid(params.pyramid, std::max(params.points.window_px, params.lines.window_px)),
         gyro(rig, params.points.initial_gyro_bias_sigma),
+        image_check(rig.camera),
         mask(rig),
         vehicle(rig.camera),
         points(rig, mask, params.points),
         lines(params.features != "points" ? makeLineTracker(rig, mask, params.lines) : nullptr) {}
 
-  void track(const Frame& frame, const ImuBatch& imu_since_last) {
+  /// False when the image is left out.
+  bool track(const Frame& frame, const ImuBatch& imu_since_last) {
     StageTimer total(statistics, "total");
+    turn = CameraTurn();
+    imu.insert(imu.end(), imu_since_last.begin(), imu_since_last.end());
+    if (!isGood(frame, imu_since_last)) return false;
     {
       StageTimer timer(statistics, "pyramid");
       pyramid.push(*frame.image);
     }
-    if (statistics.frames > 0 && !gyro.predict(imu_since_last, 1e-9 * static_cast<double>(frame.t_ns - last_t_ns)))
+    if (statistics.frames > 0 && !gyro.predict(imu, 1e-9 * static_cast<double>(frame.t_ns - tracked_t_ns)))
       ++statistics.frames_without_gyro;
     points.process(pyramid, gyro, statistics);
-    turn = points.turn().value_or(CameraTurn());
-    if (points.turn()) turn.from_ns = last_t_ns, turn.to_ns = frame.t_ns;
+    if (points.turn()) turn = *points.turn(), turn.from_ns = tracked_t_ns, turn.to_ns = frame.t_ns;
     if (lines) lines->process(pyramid, gyro, points.motion(), statistics);
     leaveOutVehicle();
+    tracked_t_ns = frame.t_ns;
+    imu.clear();
+    return true;
+  }
+
+  bool isGood(const Frame& frame, const ImuBatch& imu_since_last) {
+    const ImageWorth worth = image_check.check(frame, imu_since_last, gyro.bias());
+    statistics.images_without_contrast += worth == ImageWorth::kShowsNothing || worth == ImageWorth::kStaysDark;
+    statistics.images_repeated += worth == ImageWorth::kRepeats;
+    return worth == ImageWorth::kGood || worth == ImageWorth::kStaysDark;
   }
 
   /// From the next frame on.
@@ -91,13 +106,15 @@ struct FrontEnd::Impl {
   Rig rig;
   ImagePyramid pyramid;
   GyroPrediction gyro;
+  ImageCheck image_check;
   ImageMask mask;  ///< shared with the trackers
   VehicleParts vehicle;
   PointTracker points;
   std::unique_ptr<LineTracker> lines;  ///< null: points only
   FrontEndStatistics statistics;
   CameraTurn turn;
-  std::int64_t last_t_ns = 0;
+  std::int64_t last_t_ns = 0, tracked_t_ns = 0;
+  ImuBatch imu;  ///< since the last image that was tracked
 };
 
 FrontEnd::FrontEnd(const Rig& rig, const FrontEndParams& params) {
@@ -116,12 +133,14 @@ FrameTracks FrontEnd::process(const Frame& frame, const ImuBatch& imu_since_last
 
   // A parallel section within another one runs on its caller's thread. For images of this size OpenCV's threads cost
   // more than they give (a tenth of the time), and the estimator has work for the other core.
-  cv::parallel_for_(cv::Range(0, 1), [&](const cv::Range&) { m.track(frame, imu_since_last); });
+  bool tracked = false;
+  cv::parallel_for_(cv::Range(0, 1), [&](const cv::Range&) { tracked = m.track(frame, imu_since_last); });
 
   ++m.statistics.frames;
   m.last_t_ns = frame.t_ns;
   FrameTracks tracks;
   tracks.t_ns = frame.t_ns;
+  if (!tracked) return tracks;
   tracks.points = m.points.points();
   if (m.lines) tracks.lines = m.lines->lines();
   return tracks;

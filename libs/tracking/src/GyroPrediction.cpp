@@ -2,6 +2,7 @@
 #include "GyroPrediction.h"
 
 #include <Eigen/LU>
+#include <cmath>
 
 #include "lintel/geometry/Rotation.h"
 
@@ -13,6 +14,7 @@ constexpr double kForget =
 constexpr double kRotationNoise_rad = 5e-4;  ///< of an integrated step: gyro noise, timing, exposure
 constexpr double kUnknownRate = 1.0;         ///< [rad/s] how far constant rotation may be wrong without gyro
 constexpr double kMinBiasSigma = 1e-3;       ///< [rad/s] lower bound of the bias's standard deviation
+constexpr double kAsLong = 1.5;              ///< of the step before: between one image and two
 
 }  // namespace
 
@@ -20,6 +22,8 @@ GyroPrediction::GyroPrediction(const Rig& rig, double initial_bias_sigma)
     : R_b_c_(rig.T_b_c.q), bias_information_(Eigen::Matrix3d::Identity() / (initial_bias_sigma * initial_bias_sigma)) {}
 
 bool GyroPrediction::predict(const ImuBatch& imu, double dt_s) {
+  const double ratio = dt_s_ > 0 ? dt_s / dt_s_ : 1.0;
+  step_ratio_ = std::abs(std::log(ratio)) > std::log(kAsLong) ? static_cast<float>(ratio) : 1.0f;
   dt_s_ = dt_s;
   Eigen::Quaterniond R_b0_b1 = Eigen::Quaterniond::Identity();
   double covered_s = 0;

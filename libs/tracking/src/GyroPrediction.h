@@ -34,6 +34,10 @@ class GyroPrediction {
   /// (camera frame c1).
   void correct(const Eigen::Vector3d& delta, const Eigen::Matrix3d& information);
 
+  /// How many times as long this step is as the one before: by how much motion that goes on is more; 1 where images are
+  /// about as far apart as before, as stamps may be off.
+  float stepRatio() const { return step_ratio_; }
+
   /// Estimated gyroscope bias, body frame [rad/s].
   const Eigen::Vector3d& bias() const { return bias_; }
 
@@ -44,6 +48,7 @@ class GyroPrediction {
   Eigen::Quaterniond R_c1_c0_ = Eigen::Quaterniond::Identity();
   Eigen::Vector3d rate_c_ = Eigen::Vector3d::Zero();  ///< rotation vector of R_c1_c0 per second
   double dt_s_ = 0;
+  float step_ratio_ = 1;
   bool from_gyro_ = false;
 };
 

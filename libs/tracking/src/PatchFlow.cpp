@@ -69,6 +69,23 @@ void add(const cv::v_int32x4& row, cv::v_float32x4& sum) {
   sum = cv::v_muladd(cv::v_cvt_f32(row), cv::v_setall_f32(1), sum);
 }
 
+/// A sum of products of 16 bits. What 32 bits hold of it, the products of up to kAtOnce vectors, is added up before.
+class Sum {
+ public:
+  static constexpr int kAtOnce = 32;  ///< of at most 8160 x 4080 in pairs
+
+  void product(const cv::v_int16x8& a, const cv::v_int16x8& b) { part_ = cv::v_dotprod(a, b, part_); }
+  void carry() {
+    add(part_, total_);
+    part_ = cv::v_setzero_s32();
+  }
+  float value() const { return cv::v_reduce_sum(total_); }
+
+ private:
+  cv::v_int32x4 part_ = cv::v_setzero_s32();
+  cv::v_float32x4 total_ = cv::v_setzero_f32();
+};
+
 /// Rounded.
 cv::v_int16x8 quarter(const cv::v_int16x8& a) { return cv::v_shr<2>(cv::v_add_wrap(a, cv::v_setall_s16(2))); }
 
@@ -98,7 +115,30 @@ class Template {
     }
     const auto first_x = std::max(0, 1 - corner.x), end_x = std::min(window_px_, image.cols - 2 - corner.x);
     for (int x = 0; x < columns_; ++x) mask_[static_cast<std::size_t>(x)] = x >= first_x && x < end_x ? -1 : 0;
-    differentiate(std::max(0, 1 - corner.y), std::min(window_px_, image.rows - 2 - corner.y));
+    first_ = std::max(0, 1 - corner.y), end_ = std::min(window_px_, image.rows - 2 - corner.y);
+    pixels_ = static_cast<float>(std::max(0, end_x - first_x) * std::max(0, end_ - first_));
+    differentiate();
+    takeOutBrightness();
+  }
+
+  /// How many times the patch's contrast (standard deviation of its grey levels) what is at `corner` of `image` has.
+  float contrast(const cv::Mat& image, const Corner& corner) const {
+    const Weights weights(corner.fx, corner.fy);
+    const std::size_t step = image.step[0];
+    const unsigned char* row = image.data + (corner.y + first_) * static_cast<std::ptrdiff_t>(step) + corner.x;
+    const cv::v_int16x8 middle = cv::v_setall_s16(kMiddle), minus_one = cv::v_setall_s16(-1);
+    Sum sum, square;
+    for (int y = first_; y < end_; ++y, row += step) {
+      for (int x = 0; x < columns_; x += kLanes) {
+        const cv::v_int16x8 grey =
+            cv::v_load(mask_.data() + x) & cv::v_sub_wrap(weights.interpolate(row + x, step), middle);
+        sum.product(grey, minus_one);
+        square.product(grey, grey);
+      }
+      if (isFull(y)) sum.carry(), square.carry();
+    }
+    const float mean = sum.value() / pixels_;
+    return std::sqrt(std::max(0.0f, square.value() / pixels_ - mean * mean) / variance_);
   }
 
   /// Sums of (what is at `corner` of `image` less the patch) times the gradients [grey levels^2/px].
@@ -126,9 +166,8 @@ class Template {
 
  private:
   /// Scharr's gradients. In 16 bits: of differences over two pixels, 32 times grey levels, a quarter is weighted 3, 10,
-  /// 3 and divided by 4 again: 64 times the gradient, at most 8160. Rows from `first` to before `end` are within the
-  /// image.
-  void differentiate(int first, int end) {
+  /// 3 and divided by 4 again: 64 times the gradient, at most 8160.
+  void differentiate() {
     std::fill(gx_.begin(), gx_.end(), static_cast<short>(0));
     std::fill(gy_.begin(), gy_.end(), static_cast<short>(0));
     const cv::v_int16x8 three = cv::v_setall_s16(3), ten = cv::v_setall_s16(10);
@@ -140,7 +179,7 @@ class Template {
       return quarter(cv::v_sub_wrap(cv::v_load(a), cv::v_load(b)));
     };
     cv::v_float32x4 sum_xx = cv::v_setzero_f32(), sum_xy = cv::v_setzero_f32(), sum_yy = cv::v_setzero_f32();
-    for (int y = first; y < end; ++y) {
+    for (int y = first_; y < end_; ++y) {
       const short *above = grey_.data() + y * stride_, *here = above + stride_, *below = here + stride_;
       cv::v_int32x4 row_xx = cv::v_setzero_s32(), row_xy = cv::v_setzero_s32(), row_yy = cv::v_setzero_s32();
       for (int x = 0, k = y * columns_; x < columns_; x += kLanes, k += kLanes) {
@@ -166,11 +205,69 @@ class Template {
     yy = cv::v_reduce_sum(sum_yy) / kScale;
   }
 
+  /// Makes the gradients orthogonal to the patch and to an even patch: a change of contrast or brightness moves nothing
+  /// (as the inverse compositional algorithm with linear appearance variation does [Baker2003]).
+  void takeOutBrightness() {
+    variance_ = 0;
+    if (!(pixels_ > 0)) return;
+    const cv::v_int16x8 middle = cv::v_setall_s16(kMiddle), minus_one = cv::v_setall_s16(-1);
+    Sum t, tt, x1, y1, xt, yt;
+    for (int y = first_; y < end_; ++y) {
+      const short* grey = grey_.data() + (y + 1) * stride_ + 1;
+      for (int x = 0, k = y * columns_; x < columns_; x += kLanes, k += kLanes) {
+        const cv::v_int16x8 T = cv::v_load(mask_.data() + x) & cv::v_sub_wrap(cv::v_load(grey + x), middle),
+                            gx = cv::v_load(gx_.data() + k), gy = cv::v_load(gy_.data() + k);
+        t.product(T, minus_one), tt.product(T, T);
+        x1.product(gx, minus_one), xt.product(gx, T);
+        y1.product(gy, minus_one), yt.product(gy, T);
+      }
+      if (isFull(y))
+        for (Sum* sum : {&t, &tt, &x1, &xt, &y1, &yt}) sum->carry();
+    }
+    const float mean_t = -t.value() / pixels_, mean_x = -x1.value() / pixels_, mean_y = -y1.value() / pixels_;
+    variance_ = tt.value() / pixels_ - mean_t * mean_t;
+    if (!(variance_ > 0)) return;
+    const float cov_x = xt.value() / pixels_ - mean_x * mean_t, cov_y = yt.value() / pixels_ - mean_y * mean_t;
+    const float slope_x = cov_x / variance_, slope_y = cov_y / variance_;
+    const auto less = [&](const cv::v_int16x8& gradient, const cv::v_int16x8& T, float slope, float mean) {
+      const cv::v_float32x4 s = cv::v_setall_f32(-slope), offset = cv::v_setall_f32(slope * mean_t - mean);
+      cv::v_int32x4 g[2], p[2];
+      cv::v_expand(gradient, g[0], g[1]);
+      cv::v_expand(T, p[0], p[1]);
+      for (int half = 0; half < 2; ++half)
+        g[half] = cv::v_round(cv::v_cvt_f32(g[half]) + cv::v_muladd(cv::v_cvt_f32(p[half]), s, offset));
+      return cv::v_pack(g[0], g[1]);
+    };
+    for (int y = first_; y < end_; ++y) {
+      const short* grey = grey_.data() + (y + 1) * stride_ + 1;
+      for (int x = 0, k = y * columns_; x < columns_; x += kLanes, k += kLanes) {
+        const cv::v_int16x8 T = cv::v_sub_wrap(cv::v_load(grey + x), middle), mask = cv::v_load(mask_.data() + x);
+        short *gx = gx_.data() + k, *gy = gy_.data() + k;
+        cv::v_store(gx, mask & less(cv::v_load(gx), T, slope_x, mean_x));
+        cv::v_store(gy, mask & less(cv::v_load(gy), T, slope_y, mean_y));
+      }
+    }
+    constexpr float kScale = kGradientScale * kGradientScale;
+    xx -= pixels_ * (mean_x * mean_x + cov_x * slope_x) / kScale;
+    xy -= pixels_ * (mean_x * mean_y + cov_x * slope_y) / kScale;
+    yy -= pixels_ * (mean_y * mean_y + cov_y * slope_y) / kScale;
+  }
+
+  /// Whether sums are to be carried after row `y`.
+  bool isFull(int y) const {
+    const int rows = std::max(1, Sum::kAtOnce / (columns_ / kLanes));
+    return (y + 1 - first_) % rows == 0 || y + 1 == end_;
+  }
+
+  static constexpr short kMiddle = 4080;  ///< of interpolated grey levels
+
   int window_px_, columns_;
-  std::ptrdiff_t stride_;       ///< numbers in a row of `grey_`
-  std::vector<short> grey_;     ///< with a ring of one pixel around the patch, as gradients need it
-  std::vector<short> gx_, gy_;  ///< `columns_` a row
-  std::vector<short> mask_;     ///< of a row: 0 beyond window or image, else -1 as differences are left less right
+  int first_ = 0, end_ = 0;          ///< rows within the image
+  float pixels_ = 0, variance_ = 0;  ///< number of those that count; of the patch
+  std::ptrdiff_t stride_;            ///< numbers in a row of `grey_`
+  std::vector<short> grey_;          ///< with a ring of one pixel around the patch, as gradients need it
+  std::vector<short> gx_, gy_;       ///< `columns_` a row
+  std::vector<short> mask_;          ///< of a row: 0 beyond window or image, else -1 as differences are left less right
 };
 
 /// Prefetches the rows of a patch into the cache: patches are scattered over the image.
@@ -185,14 +282,19 @@ void prefetch(const cv::Mat& image, const cv::Point2f& centre, int window_px) {
 bool settle(const Template& patch, const cv::Mat& image, const PatchFlowParams& params, float determinant,
             cv::Point2f& place) {
   constexpr float kSwing_px = 0.01f;  // steps that nearly cancel each other oscillate about the place
+  float contrast = 1;
   cv::Point2f before(0, 0);
   for (int i = 0; i < params.max_iterations; ++i) {
     Corner corner{};
     if (!cornerOf(place, params.window_px, image, corner)) return false;
     float bx, by;
+    if (i == 0) {
+      contrast = patch.contrast(image, corner);
+      if (!(contrast > kLeastContrast && contrast < 1 / kLeastContrast)) return false;
+    }
     patch.compare(image, corner, bx, by);
-    const cv::Point2f step((patch.xy * by - patch.yy * bx) / determinant,
-                           (patch.xy * bx - patch.xx * by) / determinant);
+    const cv::Point2f step((patch.xy * by - patch.yy * bx) / (determinant * contrast),
+                           (patch.xy * bx - patch.xx * by) / (determinant * contrast));
     place += step;
     if (step.dot(step) <= static_cast<float>(params.settled_px * params.settled_px)) break;
     if (i > 0 && std::abs(step.x + before.x) < kSwing_px && std::abs(step.y + before.y) < kSwing_px) {

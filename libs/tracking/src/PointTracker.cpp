@@ -125,6 +125,7 @@ PointTracker::Followed PointTracker::follow(const ImagePyramid& pyramid, const G
                                             PointStatistics& statistics) {
   Followed followed;
   followed.outcome.assign(points_.size(), Outcome::kLost);
+  for (auto& residual : residuals_) residual.second *= gyro.stepRatio();
   std::vector<std::size_t> steady, others;
   for (std::size_t i = 0; i < points_.size(); ++i) {
     followed.px.push_back(gyro.turnedPixel(camera_, points_[i].ray));

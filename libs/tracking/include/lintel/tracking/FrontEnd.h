@@ -24,9 +24,10 @@ class FrontEnd {
   FrontEnd(FrontEnd&&) noexcept;
   FrontEnd& operator=(FrontEnd&&) noexcept;
 
-  /// Features of `frame`. `imu_since_last` covers the time from the previous frame to this one (core/Frame.h); when
-  /// it is empty the last rotation rate is assumed to go on. Throws std::invalid_argument when the image does not have
-  /// the rig's size, or the frame is not later than the one before.
+  /// Features of `frame`; none where the image shows nothing or repeats the one before while the camera turns: the
+  /// next image continues the tracks. `imu_since_last` covers the time from the previous frame to this one
+  /// (core/Frame.h); when it is empty the last rotation rate is assumed to go on. Throws std::invalid_argument when the
+  /// image does not have the rig's size, or the frame is not later than the one before.
   FrameTracks process(const Frame& frame, const ImuBatch& imu_since_last);
 
   /// A mask (Rig.h) that leaves out what was found to move with the camera, as well as what the rig's leaves out; null

@@ -63,7 +63,9 @@ struct LineStatistics {
 struct FrontEndStatistics {
   std::int64_t frames = 0;
   std::int64_t frames_without_gyro = 0;
-  double vehicle_share = 0;  ///< of the image, covered by what was found to move with the camera
+  std::int64_t images_without_contrast = 0;  ///< black, white or covered
+  std::int64_t images_repeated = 0;          ///< the image before once more, while the camera turned: left out
+  double vehicle_share = 0;                  ///< of the image, covered by what was found to move with the camera
   PointStatistics points;
   LineStatistics lines;
   std::map<std::string, StageTimes> stages;  ///< by name of the stage
