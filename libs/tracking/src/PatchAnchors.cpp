@@ -21,7 +21,6 @@ constexpr float kLeastNorm = 20;           ///< of a patch, mean taken out: 1.5 
 constexpr float kLeastArea = 0.6f,
                 kMostArea = 1.6f;                ///< of the view of a patch; beyond: a new patch, as resolutions differ
 constexpr float kNoise = 0.05f, kShear = 0.02f;  ///< of a pixel of a patch of norm 1; of the linear part in a step
-constexpr int kMaxFailures = 3;                  ///< in a row: blur and short occlusions are tolerated
 
 /// Takes brightness and contrast out; false without any texture.
 template <class Patch>
@@ -120,7 +119,7 @@ AnchorVerdict PatchAnchors::align(TrackId id, const cv::Mat& image, cv::Point2f&
   if (it == anchors_.end()) return AnchorVerdict::kUnsure;
   Warp warp{px, it->second.A};
   if (!alignPatch(it->second, image, warp))
-    return ++it->second.failures > kMaxFailures ? AnchorVerdict::kLost : AnchorVerdict::kUnsure;
+    return ++it->second.failures > max_failures_ ? AnchorVerdict::kLost : AnchorVerdict::kUnsure;
   px = warp.place;
   it->second.A = warp.A;
   it->second.failures = 0;

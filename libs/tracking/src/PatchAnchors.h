@@ -21,6 +21,9 @@ enum class AnchorVerdict {
 /// image, by an affine warp, starting from the result of the flow [Baker2004, inverse compositional; Shi1994].
 class PatchAnchors {
  public:
+  /// `failures`: in a row, before a track is lost.
+  explicit PatchAnchors(int failures) : max_failures_(failures) {}
+
   /// The patch of a track that has none.
   void add(TrackId id, const cv::Mat& image, const cv::Point2f& px);
   bool has(TrackId id) const { return anchors_.count(id) > 0; }
@@ -54,6 +57,7 @@ class PatchAnchors {
   static bool makeAnchor(const cv::Mat& image, const cv::Point2f& px, Anchor& anchor);
   static bool alignPatch(const Anchor& anchor, const cv::Mat& image, Warp& warp);
 
+  int max_failures_;
   std::map<TrackId, Anchor> anchors_;
 };
 

@@ -13,8 +13,11 @@ namespace {
 constexpr double kPointSettled_px = 0.03;  ///< a smaller step ends optical flow: PatchAnchors places old points exactly
 constexpr double kPointTexture = 0.1;      ///< patches with less are lost: far below a corner [grey levels^2/px^2]
 constexpr int kSteadyLevels = 2;           ///< of the pyramid for points whose motion is known: 10 px of change
-constexpr int kBackwardLevels = 1;         ///< of the pyramid for tracking back, which starts at the result
-constexpr int kProven = 5;                 ///< frames after which a point that matches its patch is not tracked back
+constexpr int kFailures =
+    3;  ///< of a track to be found as its patch, in a row: blur and short occlusions are tolerated
+constexpr int kFailuresWide = 1;  ///< through a wide lens a patch is distorted as it moves, and what flow finds slides
+constexpr int kBackwardLevels = 1;   ///< of the pyramid for tracking back, which starts at the result
+constexpr int kProven = 5;           ///< frames after which a point that matches its patch is not tracked back
 constexpr double kCrowded = 0.5;     ///< of the distance that new points keep: tracks may approach, but not coincide
 constexpr int kInliersForGyro = 15;  ///< with fewer their rotation does not correct that of the gyroscope
 constexpr int kInliersForDirection = 10;  ///< of a translation
@@ -35,6 +38,7 @@ PointTracker::PointTracker(const Rig& rig, const ImageMask& mask, const PointTra
       params_(params),
       detector_(mask_, params),
       drift_(params.drift_frames, twoViewParams(rig.camera, params.drift_px)),
+      anchors_(rig.camera.wide() ? kFailuresWide : kFailures),
       step_(rig.camera.meanFocal(), rig.camera.wide()) {}
 
 bool PointTracker::mayBeAt(const cv::Point2f& px) const {

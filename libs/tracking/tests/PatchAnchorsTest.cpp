@@ -38,7 +38,7 @@ class PatchAnchorsTest : public ::testing::Test {
     return anchors_.align(id, image, px) == AnchorVerdict::kHeld;
   }
 
-  PatchAnchors anchors_;
+  PatchAnchors anchors_{3};
 };
 
 TEST_F(PatchAnchorsTest, findsThePlaceAgainUnderAnotherView) {
@@ -91,6 +91,19 @@ TEST_F(PatchAnchorsTest, aPatchThatIsGoneEndsTheTrackButNotAtOnce) {
   cv::Point2f back = place(0, 1);
   EXPECT_TRUE(held(show(0, 1), back)) << "seen again, it counts from new";
   EXPECT_EQ(anchors_.align(kId, other, px), AnchorVerdict::kUnsure);
+}
+
+TEST_F(PatchAnchorsTest, aTrackEndsAfterMoreFailuresThanAreAllowed) {
+  const cv::Mat image = show(0, 1), other = show(0, 1, 11);
+  for (const int failures : {1, 3}) {
+    PatchAnchors anchors(failures);
+    anchors.add(kId, image, place(0, 1));
+    cv::Point2f px = place(0, 1);
+    for (int i = 0; i < failures; ++i) ASSERT_EQ(anchors.align(kId, other, px), AnchorVerdict::kUnsure) << failures;
+    ASSERT_EQ(anchors.align(kId, image, px), AnchorVerdict::kHeld) << "counted anew";
+    for (int i = 0; i < failures; ++i) ASSERT_EQ(anchors.align(kId, other, px), AnchorVerdict::kUnsure) << failures;
+    EXPECT_EQ(anchors.align(kId, other, px), AnchorVerdict::kLost) << failures;
+  }
 }
 
 TEST_F(PatchAnchorsTest, forgetsWhatIsNotTracked) {
