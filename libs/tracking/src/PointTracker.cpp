@@ -13,8 +13,7 @@ namespace {
 constexpr double kPointSettled_px = 0.03;  ///< a smaller step ends optical flow: PatchAnchors places old points exactly
 constexpr double kPointTexture = 0.1;      ///< patches with less are lost: far below a corner [grey levels^2/px^2]
 constexpr int kSteadyLevels = 2;           ///< of the pyramid for points whose motion is known: 10 px of change
-constexpr int kFailures =
-    3;  ///< of a track to be found as its patch, in a row: blur and short occlusions are tolerated
+constexpr int kFailures = 3;      ///< to be found as its patch, in a row, that a track survives: blur, short occlusions
 constexpr int kFailuresWide = 1;  ///< through a wide lens a patch is distorted as it moves, and what flow finds slides
 constexpr int kBackwardLevels = 1;   ///< of the pyramid for tracking back, which starts at the result
 constexpr int kProven = 5;           ///< frames after which a point that matches its patch is not tracked back

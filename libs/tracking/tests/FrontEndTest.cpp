@@ -69,6 +69,20 @@ TEST(FrontEnd, spreadsPointsAndKeepsIdsAscending) {
   }
 }
 
+TEST(FrontEnd, tracksGoOnAfterImagesThatShowNothing) {
+  const testing::Scene texture = testing::blobs(3);
+  const testing::Scene black = [](const Eigen::Vector2d&) { return 0.0; };
+  const auto tracks = trackTurning({texture, texture, texture, black, black, texture, texture}, linesAtOnce(), kRate);
+  EXPECT_TRUE(tracks[3].points.empty());
+  EXPECT_TRUE(tracks[4].points.empty());
+  std::set<TrackId> before;
+  for (const PointObservation& point : tracks[2].points) before.insert(point.id);
+  ASSERT_GT(before.size(), 20u);
+  std::size_t kept = 0;
+  for (const PointObservation& point : tracks[5].points) kept += before.count(point.id);
+  EXPECT_GT(10 * kept, 8 * before.size()) << kept << " of " << before.size();
+}
+
 TEST(FrontEnd, followsALineAndKeepsItsEnds) {
   const Strip strip{{-0.35, -0.1}, {0.3, 0.12}, 0.03};
   const auto tracks = trackTurning(std::vector<testing::Scene>(6, testing::strips({strip})), linesAtOnce(), kRate);

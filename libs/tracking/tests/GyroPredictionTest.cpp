@@ -41,5 +41,17 @@ TEST(GyroPrediction, goesOnTurningWithoutGyro) {
   EXPECT_LT((first * first).angularDistance(gyro.R_c1_c0()), 1e-9);
 }
 
+TEST(GyroPrediction, saysWhenAStepIsLongerThanTheOneBefore) {
+  GyroPrediction gyro(testing::testRig(), 0.1);
+  gyro.predict({}, 0.05);
+  EXPECT_EQ(gyro.stepRatio(), 1);
+  gyro.predict({}, 0.06);
+  EXPECT_EQ(gyro.stepRatio(), 1) << "stamps may be off";
+  gyro.predict({}, 0.18);
+  EXPECT_FLOAT_EQ(gyro.stepRatio(), 3);
+  gyro.predict({}, 0.06);
+  EXPECT_FLOAT_EQ(gyro.stepRatio(), 1.0f / 3);
+}
+
 }  // namespace
 }  // namespace lintel

@@ -72,9 +72,9 @@ TEST_P(PatchFlowOfSize, findsAShiftBetweenPixels) {
   EXPECT_GE(10 * good, static_cast<int>(px.size()) * (GetParam() < 8 ? 5 : 9));  // few pixels say little
 }
 
-/// As few pixels say little where brightness and contrast are free.
+/// From the size of patches on lines on: fewer pixels say little where brightness and contrast are free.
 class LargerPatchFlow : public PatchFlowOfSize {};
-INSTANTIATE_TEST_SUITE_P(Windows, LargerPatchFlow, ::testing::Values(13, 16, 17, 24, 51));
+INSTANTIATE_TEST_SUITE_P(Windows, LargerPatchFlow, ::testing::Values(8, 13, 16, 17, 24, 51));
 
 TEST_P(LargerPatchFlow, agreesWithOpenCvWhereBrightnessStays) {
   const cv::Mat to = show({2.3, 1.9});
@@ -88,7 +88,7 @@ TEST_P(LargerPatchFlow, agreesWithOpenCvWhereBrightnessStays) {
                            1e-4);
   int alike = 0;
   for (std::size_t i = 0; i < px.size(); ++i)
-    alike += found[i] == known[i] && (!found[i] || cv::norm(moved[i] - expected[i]) < 0.02);
+    alike += found[i] == known[i] && (!found[i] || cv::norm(moved[i] - expected[i]) < (GetParam() < 13 ? 0.1 : 0.02));
   EXPECT_GE(alike, static_cast<int>(px.size()) * 19 / 20);
 }
 
@@ -106,7 +106,7 @@ TEST_P(LargerPatchFlow, brightnessAndContrastMoveNothing) {
     int good = 0;
     for (std::size_t i = 0; i < px.size(); ++i)
       good += found[i] && cv::norm(cv::Point2d(moved[i]) - cv::Point2d(px[i]) - shift) < 0.15;
-    EXPECT_GE(10 * good, static_cast<int>(px.size()) * 9) << contrast << " " << brightness;
+    EXPECT_GE(10 * good, static_cast<int>(px.size()) * (GetParam() < 13 ? 8 : 9)) << contrast << " " << brightness;
   }
 }
 
@@ -177,7 +177,7 @@ TEST(PatchFlowTest, anUnknownGuessIsLost) {
 
 TEST(PatchFlowTest, readsNoFurtherThanItsBorder) {
   // Patches at every place on the rim, in images that end where patchBorder() says: memory checkers would see more.
-  for (const int window_px : {8, 13, 16}) {
+  for (const int window_px : {5, 8, 13, 16}) {
     const int border = patchBorder(window_px);
     const auto bordered = [&](const cv::Point2d& shift) {
       cv::Mat whole;
@@ -190,7 +190,9 @@ TEST(PatchFlowTest, readsNoFurtherThanItsBorder) {
     std::vector<cv::Point2f> moved = px;
     const auto found =
         followPatches(bordered({0, 0}), bordered({0, 0}), px, PatchFlowParams{window_px, 1, 5, 0.01, 0.1}, moved);
-    EXPECT_GT(2 * std::count(found.begin(), found.end(), 1), static_cast<std::ptrdiff_t>(px.size()));
+    if (window_px >= 8) {  // of smaller ones the image has too few pixels to say something
+      EXPECT_GT(2 * std::count(found.begin(), found.end(), 1), static_cast<std::ptrdiff_t>(px.size()));
+    }
     for (std::size_t i = 0; i < px.size(); ++i) {
       if (found[i]) {
         EXPECT_LT(cv::norm(moved[i] - px[i]), 0.05) << px[i];
