@@ -66,13 +66,20 @@ class Estimator::Impl {
   WindowUpdate process(const FrameTracks& tracks, const ImuBatch& imu);
   WindowUpdate finish();
   CalibrationEstimate calibration() const {
-    CalibrationEstimate estimate{window_.correctedCamera(), window_.T_b_c(), window_.correction[kTimeOffsetAt],
-                                 window_.readout_s(),       stampJitter_s(), {}};
+    CalibrationEstimate estimate{window_.correctedCamera(),
+                                 window_.T_b_c(),
+                                 window_.correction[kTimeOffsetAt],
+                                 window_.readout_s(),
+                                 stampJitter_s(),
+                                 axes(),
+                                 {}};
     if (tracking_) estimate.sigma = windowSigma(window_, params_, rig_.T_b_c).calibration;
     return estimate;
   }
 
  private:
+  /// As they should be given.
+  Eigen::Matrix3d axes() const { return followedBy(rig_.accelerometer_axes, window_.accelerometerAxes().A); }
   bool entersWindow(const FrameTracks& tracks);
   bool appendImu(const FrameTracks& tracks, const ImuBatch& imu);
   WindowUpdate skipFrame(const FrameTracks& tracks);
@@ -180,7 +187,7 @@ WindowUpdate Estimator::Impl::skipFrame(const FrameTracks& tracks) {
   update.reason = "between window frames";
   if (!tracking_) return update;
   Preintegration imu(biasOf(window_.frames.back().motion.data()), noise_.now(), rig_.gravity_m_s2);
-  imu.append(pending_imu_);
+  imu.append(withAxes(pending_imu_, window_.accelerometerAxes()));
   const InertialState state = propagated(stateOf(window_.frames.back()), imu);
   update.T_w_b = state.T_w_b;
   update.v_w_b = state.v_w_b;
@@ -205,7 +212,7 @@ void Estimator::Impl::addFrame(const FrameTracks& tracks) {
     frame.imu = std::make_shared<Preintegration>(biasOf(before.motion.data()), noise_.now(), rig_.gravity_m_s2);
     if (started_at_rest_) frame.imu->leaveOutCorrelatedNoise();
     frame.imu->append(pending_imu_);
-    const InertialState state = propagated(stateOf(before), *frame.imu);
+    const InertialState state = propagated(stateOf(before), withAxes(*frame.imu, window_.accelerometerAxes()));
     frame.pose = toBlock(state.T_w_b);
     frame.motion = before.motion;
     frame.motion.segment<3>(kVelocityAt) = state.v_w_b;
@@ -298,7 +305,8 @@ void Estimator::Impl::addPosesBetween(const WindowFrame& from, const WindowFrame
   if (!to.imu) return;
   const InertialState state = stateOf(from);
   const std::vector<std::int64_t> times_ns = memory_.skippedBetween(from.t_ns, to.t_ns);
-  const std::vector<Preintegration> imu = integratedTo(state.bias, *to.imu, times_ns);
+  const std::vector<Preintegration> imu =
+      integratedTo(state.bias, withAxes(*to.imu, window_.accelerometerAxes()), times_ns);
   for (std::size_t i = 0; i < times_ns.size(); ++i) {
     update.replaced.emplace_back(times_ns[i], propagated(state, imu[i]).T_w_b);
     update.replaced_covariances.push_back(propagatedCovariance(state, imu[i], covariance));
@@ -390,7 +398,7 @@ void Estimator::Impl::dropOldest(WindowUpdate& update) {
     params.landmarks.lasting_points = 0;  // they would be linearised at a wrong scale
   marginaliseOldest(window_, params, scale_drift_.takeUnexplainedChange(scale_sigma));
   retireTracks(window_, leaving, true, update);
-  retireKeyframe(window_.frames.front(), update);
+  retireKeyframe(window_, window_.frames.front(), update);
   window_.removeFrame(leaving, true);
 }
 
@@ -445,6 +453,8 @@ void Estimator::Impl::clearWindow(bool keep_calibration) {
   if (keep_calibration) {
     window_.extrinsics = former.extrinsics;
     window_.correction = former.correction;
+    window_.axes = former.axes;
+    window_.mean_f = former.mean_f;
   } else {
     window_.extrinsics = toBlock(rig_.T_b_c);
     window_.correction.setZero();

@@ -39,6 +39,21 @@ Rig wrongRig(const Rig& rig, const CalibrationParams& p, Draw& draw) {
   return wrong;
 }
 
+/// What a draw from the priors has the accelerometer's axes wrong by. The samples keep their mean over the first two
+/// seconds, about which the estimator's biases are.
+Eigen::Matrix3d turnAxes(const CalibrationParams& p, Draw& draw, TrackedFlight& flight) {
+  Eigen::Matrix3d A;
+  for (int i = 0; i < 9; ++i) A(i / 3, i % 3) = draw(i % 4 == 0 ? p.axes_scale_sigma : p.axes_angle_sigma_rad);
+  Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+  double count = 0;
+  for (std::size_t k = 0; k < 40; ++k)
+    for (const ImuSample& sample : flight.sim.frames[k].imu) sum += sample.accel, ++count;
+  const Eigen::Matrix3d shown = (Eigen::Matrix3d::Identity() + A).inverse();
+  for (SimulatedFrame& frame : flight.sim.frames)
+    for (ImuSample& sample : frame.imu) sample.accel = shown * (sample.accel + A * sum / count);
+  return A;
+}
+
 /// Another motion, later by `offset_s`.
 class Shifted : public Trajectory {
  public:
@@ -123,8 +138,11 @@ void addState(const Vector15& e, const WindowUpdate& update, SquaredErrors& to) 
   to["accelerometer bias"] = squared(e.tail<3>(), P.bottomRightCorner<3, 3>());
 }
 
-void addCalibration(const CalibrationEstimate& e, const Rig& truth, double offset_s, SquaredErrors& to) {
+void addCalibration(const CalibrationEstimate& e, const Rig& truth, double offset_s, const Eigen::Matrix3d& axes,
+                    SquaredErrors& to) {
   if (!e.sigma) return;
+  const Eigen::Array33d axes_error = (axes - e.accelerometer_axes).array() / e.sigma->accelerometer_axes.array();
+  to["axes"] = {axes_error.square().sum(), 9};
   const Camera &c = e.camera, &t = truth.camera;
   Eigen::Matrix<double, 14, 1> error;
   error << truth.T_b_c.p - e.T_b_c.p, logRotation(e.T_b_c.q.conjugate() * truth.T_b_c.q), t.fx - c.fx, t.fy - c.fy,
@@ -209,8 +227,9 @@ ConsistencyFlight flyConsistently(std::uint64_t seed, const ConsistencySetting& 
   Draw draw{std::mt19937_64(seed), {}};
   const EstimatorParams params = paramsOf(setting);
   const double offset_s = draw(params.calibration.time_offset_sigma_s);
-  const TrackedFlight flight = flyLate(seed, setting, offset_s);
+  TrackedFlight flight = flyLate(seed, setting, offset_s);
   const Rig rig = wrongRig(flight.rig, params.calibration, draw);
+  const Eigen::Matrix3d axes = turnAxes(params.calibration, draw, flight);
   Estimator estimator(rig, params);
   ConsistencyFlight result;
   LandmarkComparison landmarks(flight, result);
@@ -229,7 +248,7 @@ ConsistencyFlight flyConsistently(std::uint64_t seed, const ConsistencySetting& 
     if (times.empty() || t_s < times.front() - 1e-6 || result.lost > 0) continue;
     SquaredErrors& errors = result.at[times.front()];
     addState(comparison->error(update, frame.truth), update, errors);
-    addCalibration(estimator.calibration(), flight.rig, offset_s, errors);
+    addCalibration(estimator.calibration(), flight.rig, offset_s, axes, errors);
     times.erase(times.begin());
   }
   landmarks.add(estimator.finish());

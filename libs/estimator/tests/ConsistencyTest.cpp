@@ -26,8 +26,9 @@ TEST(EstimatorConsistency, ErrorsAreAsLargeAsTheirCovariancesSay) {
       freedoms[name] = error.freedom;
     }
   }
-  for (const char* name : {"position", "yaw", "roll, pitch", "velocity", "gyroscope bias", "accelerometer bias",
-                           "lever arm", "rotation", "focal length", "principal point", "distortion", "time offset"}) {
+  for (const char* name :
+       {"position", "yaw", "roll, pitch", "velocity", "gyroscope bias", "accelerometer bias", "lever arm", "rotation",
+        "focal length", "principal point", "distortion", "time offset", "axes"}) {
     ASSERT_EQ(sums.count(name), 1u) << name;
     const auto [low, high] = boundsOfMean(kSeeds, freedoms[name]);
     const double mean = sums[name] / static_cast<double>(kSeeds);

@@ -162,6 +162,34 @@ TEST(Estimator, FindsTheCalibrationFromARoughOne) {
   EXPECT_LT(found.T_b_c.q.angularDistance(flight.rig.T_b_c.q), 0.005);
 }
 
+/// The flight with an accelerometer whose samples f show the specific force f + axes f.
+TrackedFlight misaligned(TrackedFlight flight, const Eigen::Matrix3d& axes) {
+  const Eigen::Matrix3d shown = (Eigen::Matrix3d::Identity() + axes).inverse();
+  for (SimulatedFrame& frame : flight.sim.frames)
+    for (ImuSample& sample : frame.imu) sample.accel = shown * sample.accel;
+  return flight;
+}
+
+TEST(Estimator, FindsWhatTheAxesOfTheAccelerometerAreWrongBy) {
+  Eigen::Matrix3d axes;  // of a telephone
+  axes << 0.004, -0.02, 0, 0.05, -0.006, -0.03, -0.01, 0.02, 0.01;
+  FigureParams tilting;
+  tilting.rotation = 2;
+  tilting.seed = 1;
+  const TrackedFlight right = fly(ImuSimulatorParams{}, tracksFor(20, 0.3), FigureTrajectory(tilting)),
+                      wrong = misaligned(right, axes);
+  EstimatorParams held;
+  held.calibration.refine_axes = false;
+  const double without = positionError(run(wrong, held), right);
+  EXPECT_LT(positionError(run(wrong), right), 0.7 * without);
+  Estimator estimator(wrong.rig, {});
+  for (const SimulatedFrame& frame : wrong.sim.frames) estimator.process(frame.tracks, frame.imu);
+  const Eigen::Matrix3d found = estimator.calibration().accelerometer_axes;
+  EXPECT_NEAR(found(0, 1), axes(0, 1), 0.003);
+  EXPECT_NEAR(found(1, 2), axes(1, 2), 0.005);
+  EXPECT_LT((found - axes).cwiseAbs().maxCoeff(), 0.4 * axes.cwiseAbs().maxCoeff()) << found;
+}
+
 /// The flight with stamps of the images that are off by `sigma_s` each; the samples are those between the stamps.
 TrackedFlight withJitter(TrackedFlight flight, double sigma_s, unsigned seed) {
   ImuBatch all;

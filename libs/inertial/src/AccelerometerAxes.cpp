@@ -17,6 +17,10 @@ Eigen::Matrix<double, 3, 9> byAxes(const Eigen::Quaterniond& rotation, const Eig
 
 }  // namespace
 
+Eigen::Matrix3d followedBy(const Eigen::Matrix3d& first, const Eigen::Matrix3d& second) {
+  return first + second + second * first;
+}
+
 /// The sums of Preintegration::integrate.
 AxesJacobian axesJacobian(const Preintegration& imu, const Eigen::Vector3d& mean_f) {
   Eigen::Matrix<double, 3, 9> velocity = Eigen::Matrix<double, 3, 9>::Zero(), position = velocity;
@@ -35,11 +39,15 @@ AxesJacobian axesJacobian(const Preintegration& imu, const Eigen::Vector3d& mean
   return J;
 }
 
-Preintegration withAxes(const Preintegration& imu, const AccelerometerAxes& axes) {
-  ImuBatch samples = imu.samples();
+ImuBatch withAxes(ImuBatch samples, const AccelerometerAxes& axes) {
   for (ImuSample& sample : samples) sample.accel += axes.A * (sample.accel - axes.mean_f);
+  return samples;
+}
+
+Preintegration withAxes(const Preintegration& imu, const AccelerometerAxes& axes) {
+  if (axes.A.isZero(0)) return imu;
   Preintegration corrected(imu.bias(), imu.noise(), imu.gravity_m_s2());
-  corrected.append(samples);
+  corrected.append(withAxes(imu.samples(), axes));
   if (imu.stampSigma() > 0) corrected.setStampNoise(imu.stampSigma(), imu.stampCovariance());
   return corrected;
 }

@@ -48,6 +48,14 @@ TEST(AccelerometerAxes, TheJacobianGivesTheDeltasOfAnyAxes) {
   EXPECT_TRUE(corrected.deltaP().isApprox(imu.deltaP() + change.tail<3>(), 1e-12));
 }
 
+TEST(AccelerometerAxes, FollowedByOthersTheyAreOne) {
+  Eigen::Matrix3d first, second;
+  first << 0.1, -0.2, 0.05, 0.3, -0.1, 0.15, -0.02, 0.4, 0.2;
+  second << -0.05, 0.1, 0.02, 0.1, 0.3, -0.2, 0.2, -0.1, 0.05;
+  const Preintegration imu = turning(), both = withAxes(withAxes(imu, {first, {0, 0, 0}}), {second, {0, 0, 0}});
+  EXPECT_TRUE(both.deltaP().isApprox(withAxes(imu, {followedBy(first, second), {0, 0, 0}}).deltaP(), 1e-12));
+}
+
 TEST(AccelerometerAxes, NothingElseOfTheIntervalChanges) {
   Preintegration imu = turning();
   imu.setStampNoise(0.001, 1e-4 * Preintegration::Matrix9::Identity());

@@ -144,8 +144,7 @@ void BatchProblem::addPriors() {
   };
   addParts(makeExtrinsicsPriors(estimator_.calibration, calibrated_.T_b_c), extrinsics_at_);
   addParts(makeCorrectionPriors(estimator_.calibration), correction_at_);
-  add(makeAxesPrior(axesSigmas(material_.axes.A, refinement_.axes_scale_sigma, refinement_.axes_angle_sigma_rad)),
-      axes_at_);
+  add(makeAxesPrior(material_.axes.A, estimator_.calibration).factor, axes_at_);
   addCorrectionChanges();
   addMeanBiasWalk();
   for (std::size_t k = 0; k < material_.keyframes.size(); ++k) {

@@ -367,8 +367,7 @@ void BatchRefinement::complete(const std::vector<PointRecord>& held_out, MapMate
             [](const PointRecord& a, const PointRecord& b) { return a.id < b.id; });
   prepareMaterial(map_, material);
   material.camera_errors = errorsOf(material);
-  const Eigen::Matrix3d I = Eigen::Matrix3d::Identity();
-  report.axes = (I + material.axes.A) * (I + calibrated_.accelerometer_axes) - I;
+  report.axes = followedBy(calibrated_.accelerometer_axes, material.axes.A);
   report.verdict =
       text("refined: keyframes moved by up to %.3f m; points without part in it fit to %.2f px (before %.2f)",
            report.moved_m, report.held_out_after_px, report.held_out_before_px);

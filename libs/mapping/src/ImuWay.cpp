@@ -11,7 +11,7 @@ std::vector<Pose> posesBetween(const RetiredKeyframe& from, const RetiredKeyfram
   std::vector<std::int64_t> times = times_ns;
   times.push_back(to.t_ns);
   const InertialState start{from.T_w_b, from.v_w_b, from.bias};
-  const std::vector<Preintegration> imu = integratedTo(from.bias, *to.imu, times);
+  const std::vector<Preintegration> imu = integratedTo(from.bias, withAxes(*to.imu, to.axes), times);
   const InertialState arrived = propagated(start, imu.back());
   const double T = 1e-9 * static_cast<double>(to.t_ns - from.t_ns);
   const Eigen::Vector3d turn = logRotation(arrived.T_w_b.q.conjugate() * to.T_w_b.q);

@@ -15,8 +15,10 @@ Eigen::Vector3d meanSpecificForce(const std::vector<RetiredKeyframe>& keyframes)
 }
 
 void correctSamples(AccelerometerAxes& axes, std::vector<RetiredKeyframe>& keyframes) {
-  for (RetiredKeyframe& keyframe : keyframes)
+  for (RetiredKeyframe& keyframe : keyframes) {
     if (keyframe.imu) keyframe.imu = std::make_shared<Preintegration>(withAxes(*keyframe.imu, axes));
+    keyframe.axes = {};
+  }
   axes = {};
 }
 

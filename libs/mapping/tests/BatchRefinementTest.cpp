@@ -50,7 +50,8 @@ class BatchRefinementTest : public testing::Test {
       update.T_w_b.q = expRotation(t * turn) * update.T_w_b.q;
       builder.add(update);
       if (i % 5 != 0) continue;
-      last.keyframes.push_back({i, update.t_ns, update.T_w_b, frame.truth.state.v_w_b + drift, {}, imu});
+      last.keyframes.push_back(
+          {i, update.t_ns, update.T_w_b, frame.truth.state.v_w_b + drift, {}, imu, false, false, {}, 0});
       imu = std::make_shared<Preintegration>(ImuBias{}, rig_.imu_noise);
       imu->append({frame.imu.back()});
       for (const PointObservation& o : frame.tracks.points) {
@@ -499,7 +500,8 @@ TEST_F(BatchRefinementTest, AnErrorOfTheAccelerometerThatComesAndGoesIsNoMotion)
   disturb(without, 0, error_b);
   const RefinementReport report = refine(material_);
   EXPECT_TRUE(report.accepted);
-  EXPECT_LT(report.axes.cwiseAbs().maxCoeff(), 4 * params_.axes_angle_sigma_rad) << "nor a fault of its axes";
+  EXPECT_LT(report.axes.cwiseAbs().maxCoeff(), 4 * estimator_.calibration.axes_angle_sigma_rad)
+      << "nor a fault of its axes";
   refine(without);
   EXPECT_LT(error(material_), 0.6 * error(without));
 }
@@ -531,7 +533,7 @@ TEST_F(BatchRefinementTest, WrongAxesOfTheAccelerometerAreFoundAndItsSamplesCorr
   EXPECT_LT((report.axes - axes).norm(), 0.5 * axes.norm()) << report.axes;
   EXPECT_NEAR(report.axes(1, 2), axes(1, 2), 0.003);  // of what varies most
   EXPECT_GT(report.scale_sigma, report.axes.norm() / 3) << "nor is its scale known better than its axes";
-  params_.axes_scale_sigma = params_.axes_angle_sigma_rad = 1e-9;
+  estimator_.calibration.refine_axes = false;
   EXPECT_LT(refine(held).axes.norm(), 1e-6);
   const auto spread = [](const MapMaterial& m) {
     Eigen::Vector3d least = m.keyframes.front().bias.accel, most = least;
@@ -545,8 +547,8 @@ TEST_F(BatchRefinementTest, WrongAxesOfTheAccelerometerAreFoundAndItsSamplesCorr
 }
 
 TEST_F(BatchRefinementTest, AxesBeyondThePriorOfACalibratedSensorAreHeldLessFirmly) {
-  params_.axes_scale_sigma = 0.0004;
-  params_.axes_angle_sigma_rad = 0.001;
+  estimator_.calibration.axes_scale_sigma = 0.0004;
+  estimator_.calibration.axes_angle_sigma_rad = 0.001;
   const auto found = [&](double share) {
     MapMaterial material = material_;
     misalign(material, share * axesOfATelephone());

@@ -33,17 +33,16 @@ std::string readoutRemark(const Rig& given, const CalibrationEstimate& estimate)
   return text;
 }
 
-std::string axesRemark(const Rig& given, const RefinementReport& refinement) {
+std::string axesRemark(const Rig& given, const Eigen::Matrix3d& A) {
   constexpr double kLeast = 0.02;  // four standard deviations of a direction, of a calibrated sensor's prior
-  const double wrong = (refinement.axes - given.accelerometer_axes).cwiseAbs().maxCoeff();
-  if (!refinement.accepted || !(wrong > kLeast)) return {};
-  const Eigen::Matrix3d& A = refinement.axes;
+  const double wrong = (A - given.accelerometer_axes).cwiseAbs().maxCoeff();
+  if (!(wrong > kLeast)) return {};
   char text[500];
   std::snprintf(
       text, sizeof text,
       "the accelerometer's axes are wrong by up to %.1f %% (not square to each other or to the gyroscope's, or "
-      "of wrong scale); corrected in the refined result, better give `accelerometer_axes: [%.4f, %.4f, %.4f, "
-      "%.4f, %.4f, %.4f, %.4f, %.4f, %.4f]` beside the IMU's noise densities, for the causal one as well",
+      "of wrong scale); corrected on the way, better give `accelerometer_axes: [%.4f, %.4f, %.4f, "
+      "%.4f, %.4f, %.4f, %.4f, %.4f, %.4f]` beside the IMU's noise densities: then they are right from the start",
       100 * wrong, A(0, 0), A(0, 1), A(0, 2), A(1, 0), A(1, 1), A(1, 2), A(2, 0), A(2, 1), A(2, 2));
   return text;
 }

@@ -13,9 +13,9 @@ namespace lintel {
 /// where none is given, or a readout that is another. Empty: nothing.
 std::string readoutRemark(const Rig& given, const CalibrationEstimate& estimate);
 
-/// What a refinement found about the accelerometer's axes: that they are wrong by more than the prior explains.
-/// Empty: nothing.
-std::string axesRemark(const Rig& given, const RefinementReport& refinement);
+/// What it found about the accelerometer's axes, `A` as Rig::accelerometer_axes should be: that they are wrong by more
+/// than the prior explains. Empty: nothing.
+std::string axesRemark(const Rig& given, const Eigen::Matrix3d& A);
 
 /// What it found about the images' stamps: that they are off, each by its own amount. Empty: nothing.
 std::string stampRemark(const CalibrationEstimate& estimate);

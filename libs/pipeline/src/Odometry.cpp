@@ -159,8 +159,9 @@ OdometryResult runOdometry(Recording& recording, const Configuration& configurat
     result.remarks.push_back("noise of the IMU: " + noise);
   if (const std::string readout = readoutRemark(recording.rig(), result.window_calibration); !readout.empty())
     result.remarks.push_back(readout);
-  if (const std::string axes = axesRemark(recording.rig(), result.refinement); !axes.empty())
-    result.remarks.push_back(axes);
+  const Eigen::Matrix3d& axes =
+      result.refinement.accepted ? result.refinement.axes : result.window_calibration.accelerometer_axes;
+  if (const std::string wrong = axesRemark(recording.rig(), axes); !wrong.empty()) result.remarks.push_back(wrong);
   if (const std::string stamps = stampRemark(result.window_calibration); !stamps.empty())
     result.remarks.push_back(stamps);
   if (const std::string vehicle = vehicleRemark(result.statistics.front_end.vehicle_share); !vehicle.empty())

@@ -84,8 +84,9 @@ void RunCheck::watchImu(const WindowUpdate& update) {
   for (const RetiredKeyframe& keyframe : update.keyframes) {
     const InertialState state{keyframe.T_w_b, keyframe.v_w_b, keyframe.bias};
     if (keyframe_ && keyframe.imu) {
-      imu_misfits_.push_back(squaredMisfit(*keyframe_, state, *keyframe.imu));
-      accel_misfits_.push_back(squaredAccelMisfit(*keyframe_, state, *keyframe.imu));
+      const Preintegration imu = withAxes(*keyframe.imu, keyframe.axes);
+      imu_misfits_.push_back(squaredMisfit(*keyframe_, state, imu));
+      accel_misfits_.push_back(squaredAccelMisfit(*keyframe_, state, imu));
     }
     keyframe_ = state;
   }

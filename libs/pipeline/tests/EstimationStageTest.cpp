@@ -12,7 +12,7 @@
 namespace lintel {
 namespace {
 
-/// A flight whose accelerometer shows something of its turns in the first second.
+/// A flight whose accelerometer shows three times the motion in its first frames; gravity stays.
 std::vector<TrackedFrame> flightWithWrongBeginning(const Rig& rig, int wrong_frames) {
   TrackSimulationParams params;
   params.duration_s = 8;
@@ -23,7 +23,10 @@ std::vector<TrackedFrame> flightWithWrongBeginning(const Rig& rig, int wrong_fra
     tracked.step.frame.t_ns = frame.tracks.t_ns;
     tracked.step.imu = frame.imu;
     if (wrong_frames-- > 0)
-      for (ImuSample& sample : tracked.step.imu) sample.accel += 0.2 * sample.gyro.cross(sample.accel);
+      for (ImuSample& sample : tracked.step.imu) {
+        const Eigen::Vector3d up_b = frame.truth.state.T_w_b.q.conjugate() * -gravityW();
+        sample.accel = up_b + 3 * (sample.accel - up_b);
+      }
     flight.push_back(tracked);
   }
   return flight;
@@ -37,7 +40,7 @@ TEST(EstimationStage, PosesOfAWrongStartAreLeftOut) {
   EstimationStage stage(rig, configuration, result);
   std::size_t given = 0, withdrawn = 0, replaced = 0;
   double first_start_s = 0;
-  for (const TrackedFrame& frame : flightWithWrongBeginning(rig, 24)) {
+  for (const TrackedFrame& frame : flightWithWrongBeginning(rig, 36)) {
     const WindowUpdate update = stage.process(frame);
     given += update.hasPose();
     if (update.startWasWrong()) {

@@ -103,6 +103,41 @@ TEST(RunCheck, AFailureWithoutDataIsNoDivergence) {
   }
 }
 
+/// A body at rest whose accelerometer shows along y some of what is along z; `known`: the estimate takes it out.
+std::string verdictWithWrongAxes(bool known) {
+  RunCheck check{givenRig()};
+  OdometryStatistics statistics;
+  for (int frame = 0; frame < 100; ++frame) {
+    TrackedFrame tracked;
+    tracked.step.frame.image =
+        std::make_shared<GrayImage>(GrayImage{64, 64, std::vector<std::uint8_t>(std::size_t{64} * 64, 100)});
+    WindowUpdate update;
+    update.t_ns = std::int64_t{100'000'000} * (frame + 1);
+    update.status = EstimatorStatus::kTracking;
+    for (int i = 0; i <= 20; ++i)
+      tracked.step.imu.push_back({update.t_ns - std::int64_t{5'000'000} * (20 - i), {0, 0, 0}, {0, 0.4, 9.8}});
+    RetiredKeyframe keyframe;
+    auto imu = std::make_shared<Preintegration>(ImuBias{}, ImuNoise{});
+    imu->append(tracked.step.imu);
+    keyframe.imu = imu;
+    if (known) keyframe.axes.A(1, 2) = -0.4 / 9.8;
+    keyframe.T_w_b.p.x() = 0.001;
+    keyframe.v_w_b.setZero();
+    update.keyframes.push_back(keyframe);
+    check.add(tracked, update);
+    ++statistics.frames;
+  }
+  statistics.first_start_s = 0;
+  statistics.last_frame_ns = 10'000'000'000;
+  statistics.frames_with_pose = statistics.frames;
+  return check.verdict(statistics, givenRig());
+}
+
+TEST(RunCheck, AxesThatTheEstimateKnowsAreNoContradiction) {
+  EXPECT_NE(verdictWithWrongAxes(false).find("contradict"), std::string::npos) << verdictWithWrongAxes(false);
+  EXPECT_EQ(verdictWithWrongAxes(true), "");
+}
+
 TEST(RunCheck, ACalibrationThatTheEstimateLeft) {
   Rig estimated = givenRig();
   estimated.camera.fx = estimated.camera.fy = 458 * 1.02;  // a roughly known one

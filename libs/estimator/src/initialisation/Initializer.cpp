@@ -240,6 +240,7 @@ double Initializer::misfitOf(SlidingWindow& window) const {
   WindowFactors factors(window, params_.factors);
   factors.addPriors();
   factors.addImu();
+  factors.addAxesPrior(params_.calibration);
   if (isFull(window)) factors.addCalibrationPriors(refinedIn(window, params_.calibration), T_b_c_calibrated_);
   for (const Factor& factor : factors.factors()) {
     std::vector<const double*> blocks;
@@ -279,6 +280,7 @@ bool Initializer::adjust(const CalibrationParams& calibration, Gates gates, Slid
     WindowFactors factors(window, params_.factors);
     factors.addPriors();
     factors.addImu();
+    factors.addAxesPrior(params_.calibration);
     factors.addPoints();
     factors.addGauge();
     factors.addCalibrationPriors(refined, T_b_c_calibrated_);
@@ -338,6 +340,7 @@ double Initializer::relativeScaleSigma(SlidingWindow& window) const {
   WindowFactors factors(window, params_.factors);
   factors.addPriors();
   factors.addImu();
+  factors.addAxesPrior(params_.calibration);
   factors.addPoints();
   factors.addGauge();
   std::set<BlockKey> frozen;
@@ -346,6 +349,7 @@ double Initializer::relativeScaleSigma(SlidingWindow& window) const {
     factors.addCalibrationPriors(refined, T_b_c_calibrated_);
   else
     frozen = {{BlockKey::kExtrinsics, 0}, {BlockKey::kCorrection, 0}};
+  if (!params_.calibration.refine_axes) frozen.insert({BlockKey::kAxes, 0});
   ReducedSystem system(window, factors.factors(), {}, frozen);
   if (isFull(window)) holdCalibration(system, refined);
   system.linearise();
@@ -369,6 +373,7 @@ void Initializer::setBiasPrior(SlidingWindow& window, const MotionBlock& mean, d
                                double velocity_sigma) const {
   const BlockKey first{BlockKey::kMotion, window.frames.front().id}, mean_bias{BlockKey::kMeanBias, 0};
   window.mean_bias = mean.segment<3>(kBiasAccelAt);
+  window.mean_f = imuStatistics(window, 1).mean_accel;
   window.priors = {
       {{first, mean_bias}, makeFirstMotionPrior(mean, velocity_sigma, gyro_sigma, window.frames.back().imu->noise())},
       {{mean_bias}, makeMeanBiasPrior(window.mean_bias, params_.initializer)}};

@@ -21,6 +21,7 @@ void holdCalibration(ReducedSystem& system, const CalibrationParams& calibration
   if (!calibration.refine_extrinsics) system.hold({BlockKey::kExtrinsics, 0}, 0, kPoseTangent);
   if (!calibration.refine_camera) system.hold(kCorrection, 0, kReadoutAt);
   if (!calibration.refine_readout) system.hold(kCorrection, kReadoutAt, 1);
+  if (!calibration.refine_axes) system.hold({BlockKey::kAxes, 0}, 0, kAxesSize);
   if (!calibration.refine_time_offset) system.hold(kCorrection, kTimeOffsetAt, 1);
 }
 
@@ -30,6 +31,7 @@ SolveSummary solveWindow(SlidingWindow& window, const std::vector<Factor>& facto
   if (!calibration.refine_extrinsics) frozen.insert({BlockKey::kExtrinsics, 0});
   if (!calibration.refine_camera && !calibration.refine_readout && !calibration.refine_time_offset)
     frozen.insert({BlockKey::kCorrection, 0});
+  if (!calibration.refine_axes) frozen.insert({BlockKey::kAxes, 0});
   ReducedSystem system(window, factors, {}, frozen);
   holdCalibration(system, calibration);
 

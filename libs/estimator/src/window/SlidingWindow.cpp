@@ -27,6 +27,10 @@ bool SlidingWindow::contains(FrameId id) const {
   return std::any_of(frames.begin(), frames.end(), [id](const WindowFrame& f) { return f.id == id; });
 }
 
+AccelerometerAxes SlidingWindow::accelerometerAxes() const {
+  return {Eigen::Map<const Eigen::Matrix<double, 3, 3, Eigen::RowMajor>>(axes.data()), mean_f};
+}
+
 const WindowFrame& SlidingWindow::frame(FrameId id) const {
   for (const WindowFrame& f : frames)
     if (f.id == id) return f;
@@ -47,6 +51,8 @@ double* SlidingWindow::block(const BlockKey& key) {
       return correction.data();
     case BlockKey::kMeanBias:
       return mean_bias.data();
+    case BlockKey::kAxes:
+      return axes.data();
     case BlockKey::kDirection:
       return directions.at(key.id).d_w.data();
     case BlockKey::kPoint:

@@ -66,18 +66,20 @@ PriorParts makeCorrectionPriors(const CalibrationParams& p) {
   return parts;
 }
 
-Eigen::Matrix3d axesSigmas(const Eigen::Matrix3d& found, double scale_sigma, double angle_sigma_rad) {
-  constexpr double kRefuted = 3, kWider = 4, kOthers = 2;
-  Eigen::Matrix3d sigmas = Eigen::Matrix3d::Constant(angle_sigma_rad);
-  sigmas.diagonal().setConstant(scale_sigma);
+Eigen::Matrix3d axesSigmas(const Eigen::Matrix3d& found, const CalibrationParams& p) {
+  constexpr double kRefuted = 3, kWider = 8, kOthers = 4;
+  Eigen::Matrix3d sigmas = Eigen::Matrix3d::Constant(p.axes_angle_sigma_rad);
+  sigmas.diagonal().setConstant(p.axes_scale_sigma);
   const Eigen::Array<bool, 3, 3> refuted = found.cwiseAbs().array() > kRefuted * sigmas.array();
   if (!refuted.any()) return sigmas;
   return refuted.select(kWider * sigmas, kOthers * sigmas);
 }
 
-std::unique_ptr<PriorFactor> makeAxesPrior(const Eigen::Matrix3d& sigmas) {
+PriorPart makeAxesPrior(const Eigen::Matrix3d& found, const CalibrationParams& p) {
+  const Eigen::Matrix3d sigmas = p.refine_axes ? axesSigmas(found, p) : Eigen::Matrix3d::Constant(kHeld);
   const Eigen::Matrix3d rows = sigmas.transpose();  // the block has them row by row
-  return makeBlockPrior(std::make_shared<VectorManifold>(kAxesSize), AxesBlock::Zero(), AxesBlock::Map(rows.data()));
+  return {makeBlockPrior(std::make_shared<VectorManifold>(kAxesSize), AxesBlock::Zero(), AxesBlock::Map(rows.data())),
+          p.refine_axes};
 }
 
 std::unique_ptr<PriorFactor> makeRestPrior(double velocity_sigma) {

@@ -5,7 +5,7 @@
 
 #include "landmarks/LineDegeneracy.h"
 #include "lintel/estimator/StatePriors.h"
-#include "lintel/factors/ImuFactor.h"
+#include "lintel/factors/AxesImuFactor.h"
 #include "lintel/factors/StructuralFactor.h"
 #include "lintel/factors/VanishingFactor.h"
 
@@ -44,6 +44,7 @@ void WindowFactors::addAll(const EstimatorParams& params, const Pose& T_b_c_cali
   addPriors();
   addGauge();
   addCalibrationPriors(params.calibration, T_b_c_calibrated);
+  addAxesPrior(params.calibration);
   addMeasurements(params);
 }
 
@@ -74,6 +75,11 @@ void WindowFactors::addCalibrationPriors(const CalibrationParams& params, const 
   addParts(makeCorrectionPriors(params), BlockKey::kCorrection);
 }
 
+void WindowFactors::addAxesPrior(const CalibrationParams& params) {
+  PriorPart part = makeAxesPrior(window_.accelerometerAxes().A, params);
+  if (part.refined) add(std::move(part.factor), {{BlockKey::kAxes, 0}});
+}
+
 void WindowFactors::addGauge() {
   const WindowFrame& oldest = window_.frames.front();
   add(makeGaugePrior(oldest.pose), {{BlockKey::kPose, oldest.id}});
@@ -83,11 +89,12 @@ void WindowFactors::addImu() {
   for (std::size_t i = 1; i < window_.frames.size(); ++i) {
     const WindowFrame &before = window_.frames[i - 1], &frame = window_.frames[i];
     if (!frame.imu || frame.imu->dt_s() <= 0) continue;
-    add(std::make_unique<ImuFactor>(frame.imu), {{BlockKey::kPose, before.id},
-                                                 {BlockKey::kMotion, before.id},
-                                                 {BlockKey::kPose, frame.id},
-                                                 {BlockKey::kMotion, frame.id},
-                                                 {BlockKey::kMeanBias, 0}});
+    add(std::make_unique<AxesImuFactor>(frame.imu, window_.mean_f), {{BlockKey::kPose, before.id},
+                                                                     {BlockKey::kMotion, before.id},
+                                                                     {BlockKey::kPose, frame.id},
+                                                                     {BlockKey::kMotion, frame.id},
+                                                                     {BlockKey::kMeanBias, 0},
+                                                                     {BlockKey::kAxes, 0}});
   }
 }
 

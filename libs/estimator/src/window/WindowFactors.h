@@ -37,6 +37,7 @@ class WindowFactors {
   /// Ties position and yaw of the oldest frame to what they are: the four directions that no measurement sees. Without
   /// it a solve may turn the whole window, and the causal trajectory would jump. Never marginalised.
   void addGauge();
+  void addAxesPrior(const CalibrationParams& params);
   void addImu();
   void addRest(const EstimatorParams& params);
   void addPoints();

@@ -93,15 +93,16 @@ void retireTracks(SlidingWindow& window, FrameId leaving, bool keyframe, WindowU
   }
 }
 
-void retireKeyframe(const WindowFrame& frame, WindowUpdate& update) {
+void retireKeyframe(const SlidingWindow& window, const WindowFrame& frame, WindowUpdate& update) {
   update.keyframes.push_back({frame.id, frame.t_ns, frame.T_w_b(), velocityOf(frame.motion.data()),
-                              biasOf(frame.motion.data()), frame.imu, frame.at_rest, frame.blind});
+                              biasOf(frame.motion.data()), frame.imu, frame.at_rest, frame.blind,
+                              window.accelerometerAxes()});
 }
 
 void retireAll(SlidingWindow& window, WindowUpdate& update) {
   for (const auto& [id, track] : window.points) retirePoint(window, track, update);
   for (const auto& [id, track] : window.lines) retireLine(track, update);
-  for (const WindowFrame& frame : window.frames) retireKeyframe(frame, update);
+  for (const WindowFrame& frame : window.frames) retireKeyframe(window, frame, update);
   window.points.clear();
   window.lines.clear();
   window.frames.clear();

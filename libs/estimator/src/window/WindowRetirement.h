@@ -12,7 +12,7 @@ namespace lintel {
 void retireTracks(SlidingWindow& window, FrameId leaving, bool keyframe, WindowUpdate& update);
 
 /// Hands over the frame as a keyframe.
-void retireKeyframe(const WindowFrame& frame, WindowUpdate& update);
+void retireKeyframe(const SlidingWindow& window, const WindowFrame& frame, WindowUpdate& update);
 
 /// Hands over every frame and every track with an estimate, and empties the window.
 void retireAll(SlidingWindow& window, WindowUpdate& update);

@@ -44,6 +44,9 @@ WindowSigma windowSigma(const SlidingWindow& window, const EstimatorParams& para
     sigma.calibration.p_b_c_m = pose.head<3>();
     sigma.calibration.R_b_c_rad = pose.tail<3>();
   }
+  const Eigen::VectorXd axes = marginals.sigmas({BlockKey::kAxes, 0});
+  if (params.calibration.refine_axes && axes.size() == kAxesSize)
+    sigma.calibration.accelerometer_axes = Eigen::Map<const Eigen::Matrix<double, 3, 3, Eigen::RowMajor>>(axes.data());
   const Eigen::VectorXd correction = marginals.sigmas({BlockKey::kCorrection, 0});
   if (correction.size() != kCorrectionSize) return sigma;
   sigma.calibration.covariance = jointCovariance(marginals);

@@ -102,6 +102,7 @@ class AnyFactorTest : public testing::Test {
   void addKnowledge() {
     factors_->addGauge();
     factors_->addCalibrationPriors(kParams.calibration, window_.T_b_c());
+    factors_->addAxesPrior(kParams.calibration);
     factors_->add(makeBlockPrior(manifoldOf(BlockKey::kMotion), window_.frames.front().motion,
                                  Eigen::VectorXd::Constant(kMotionSize, 0.02)),
                   {{BlockKey::kMotion, window_.frames.front().id}});

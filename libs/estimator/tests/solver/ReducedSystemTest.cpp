@@ -32,6 +32,7 @@ class ReducedSystemTest : public testing::Test {
     window_.correction << 0.3, -0.2, 0.1, 0.4, 1e-3, -1e-3, 0, 1e-3;
     window_.directions[3].d_w = DirectionBlock(0.1, 0.2, 1).normalized();
     factors_ = std::make_unique<WindowFactors>(window_, kParams.factors);
+    factors_->addAxesPrior(kParams.calibration);
     factors_->addImu();
     factors_->addPoints();
     factors_->addLines(kParams.degeneracy);

@@ -37,6 +37,7 @@ WindowFactors everything(const SlidingWindow& window, const FactorParams& params
   WindowFactors factors(window, params);
   factors.addGauge();
   factors.addCalibrationPriors(kParams.calibration, window.T_b_c());
+  factors.addAxesPrior(kParams.calibration);
   factors.addImu();
   factors.add(makeBlockPrior(manifoldOf(BlockKey::kMotion), window.frames.front().motion,
                              Eigen::VectorXd::Constant(kMotionSize, 0.02)),  // half a second does not show the scale
@@ -119,6 +120,18 @@ TEST(WindowSolver, WhatIsNotRefinedIsAConstantAndTheRestIsNot) {
   ReducedSystem system(window, factors.factors(), {}, {{BlockKey::kExtrinsics, 0}});
   system.linearise();
   EXPECT_LT(system.eliminate().H.diagonal().maxCoeff(), 1e15);
+}
+
+TEST(WindowSolver, AxesAreHeldWhereTheyAreNotRefined) {
+  for (const bool refined : {true, false}) {
+    EstimatorParams params;
+    params.calibration.refine_axes = refined;
+    SlidingWindow window = disturbedWindow();
+    WindowFactors factors(window, params.factors);
+    factors.addAll(params, window.T_b_c());
+    solveWindow(window, factors.factors(), params.calibration, {50});
+    EXPECT_EQ(window.axes.norm() > 0, refined);
+  }
 }
 
 TEST(WindowSolver, StopsAtTheLimitOfIterations) {

@@ -100,8 +100,15 @@ TEST(CalibrationPriors, WhatIsNotRefinedIsHeldWithoutARobustLoss) {
   EXPECT_TRUE(others[3].refined);
 }
 
+CalibrationParams axesParams() {
+  CalibrationParams p;
+  p.axes_scale_sigma = 0.002;
+  p.axes_angle_sigma_rad = 0.01;
+  return p;
+}
+
 TEST(AxesPrior, ScalesAndDirectionsHaveTheirOwnSigmas) {
-  const auto prior = makeAxesPrior(axesSigmas(Eigen::Matrix3d::Zero(), 0.002, 0.01));
+  const auto prior = makeAxesPrior(Eigen::Matrix3d::Zero(), axesParams()).factor;
   AxesBlock axes = AxesBlock::Zero();
   axes[4] = 0.006;  // the scale of y
   axes[5] = -0.02;  // y shows what is along z
@@ -116,19 +123,31 @@ TEST(AxesPrior, WhereAnElementIsFoundBeyondThreeStandardDeviationsAllAreLessCert
   Eigen::Matrix3d found = Eigen::Matrix3d::Zero(), expected = Eigen::Matrix3d::Constant(0.01);
   expected.diagonal().setConstant(0.002);
   found(0, 1) = 0.029;
-  EXPECT_TRUE(axesSigmas(found, 0.002, 0.01).isApprox(expected)) << "a calibrated sensor";
+  EXPECT_TRUE(axesSigmas(found, axesParams()).isApprox(expected)) << "a calibrated sensor";
   found(1, 0) = -0.031;
   found(2, 2) = 0.0061;
-  expected *= 2;
-  expected(1, 0) = 0.04;
-  expected(2, 2) = 0.008;
-  EXPECT_TRUE(axesSigmas(found, 0.002, 0.01).isApprox(expected)) << axesSigmas(found, 0.002, 0.01);
+  expected *= 4;
+  expected(1, 0) = 0.08;
+  expected(2, 2) = 0.016;
+  EXPECT_TRUE(axesSigmas(found, axesParams()).isApprox(expected)) << axesSigmas(found, axesParams());
   AxesBlock axes = AxesBlock::Zero();
   axes[3] = 0.08;  // (1, 0), row by row
   Eigen::VectorXd r(9);
   const double* block = axes.data();
-  ASSERT_TRUE(makeAxesPrior(expected)->Evaluate(&block, r.data(), nullptr));
-  EXPECT_NEAR(r.norm(), 2, 1e-12);
+  ASSERT_TRUE(makeAxesPrior(found, axesParams()).factor->Evaluate(&block, r.data(), nullptr));
+  EXPECT_NEAR(r.norm(), 1, 1e-12);
+}
+
+TEST(AxesPrior, HoldsAxesThatAreNotRefined) {
+  CalibrationParams params = axesParams();
+  params.refine_axes = false;
+  const PriorPart part = makeAxesPrior(Eigen::Matrix3d::Constant(0.1), params);
+  EXPECT_FALSE(part.refined);
+  AxesBlock axes = AxesBlock::Constant(1e-9);
+  Eigen::VectorXd r(9);
+  const double* block = axes.data();
+  ASSERT_TRUE(part.factor->Evaluate(&block, r.data(), nullptr));
+  EXPECT_TRUE(r.isApprox(Eigen::VectorXd::Ones(9), 1e-9)) << r.transpose();
 }
 
 TEST(ParamsFor, ADistortionOfZeroIsNotKnown) {

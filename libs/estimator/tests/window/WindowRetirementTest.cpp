@@ -93,7 +93,9 @@ TEST_F(WindowRetirementTest, TracksWithoutAnEstimateSaySo) {
 TEST_F(WindowRetirementTest, KeyframesCarryTheirState) {
   window_.frames[1].motion << 1, 2, 3, 0.1, 0.2, 0.3, 0.4, 0.5, 0.6;
   window_.frames[1].at_rest = true;
-  retireKeyframe(window_.frames[1], update_);
+  window_.axes[3] = 0.02;  // (1, 0), row by row
+  window_.mean_f = {0, 0, 9};
+  retireKeyframe(window_, window_.frames[1], update_);
   ASSERT_EQ(update_.keyframes.size(), 1u);
   const RetiredKeyframe& keyframe = update_.keyframes[0];
   EXPECT_EQ(keyframe.id, 1u);
@@ -103,6 +105,8 @@ TEST_F(WindowRetirementTest, KeyframesCarryTheirState) {
   EXPECT_EQ(keyframe.bias.gyro, Eigen::Vector3d(0.1, 0.2, 0.3));
   EXPECT_EQ(keyframe.bias.accel, Eigen::Vector3d(0.4, 0.5, 0.6));
   EXPECT_TRUE(keyframe.at_rest);
+  EXPECT_EQ(keyframe.axes.A(1, 0), 0.02);
+  EXPECT_EQ(keyframe.axes.mean_f, Eigen::Vector3d(0, 0, 9));
 }
 
 TEST_F(WindowRetirementTest, RetireAllHandsOverEverythingOnceAndEmpties) {

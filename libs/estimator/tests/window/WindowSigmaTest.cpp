@@ -44,6 +44,9 @@ TEST(WindowSigma, ObservationsNarrowThePriorAndNothingWidensIt) {
   EXPECT_LT(sigma.time_offset_s, 0.7 * prior.time_offset_sigma_s) << "motion shows the time offset";
   EXPECT_GT(sigma.readout_s, 0);
   EXPECT_LT(sigma.readout_s, prior.readout_sigma_s * slack);
+  EXPECT_GT(sigma.accelerometer_axes.minCoeff(), 0);
+  EXPECT_LT(sigma.accelerometer_axes.diagonal().maxCoeff(), prior.axes_scale_sigma * slack);
+  EXPECT_LT(sigma.accelerometer_axes.maxCoeff(), prior.axes_angle_sigma_rad * slack);
   EXPECT_GT(all.bias.gyro.minCoeff(), 0);
   EXPECT_LT(all.bias.gyro.maxCoeff(), 0.05) << "the turning of the images shows it";
   EXPECT_GT(all.bias.accel.minCoeff(), 0);
@@ -53,10 +56,11 @@ TEST(WindowSigma, WhatIsHeldHasNone) {
   const SlidingWindow window = flownWithNoise();
   EstimatorParams params;
   params.calibration.refine_extrinsics = params.calibration.refine_camera = params.calibration.refine_readout =
-      params.calibration.refine_time_offset = false;
+      params.calibration.refine_time_offset = params.calibration.refine_axes = false;
   const WindowSigma all = windowSigma(window, params, window.T_b_c());
   const CalibrationSigma& sigma = all.calibration;
-  EXPECT_EQ(sigma.p_b_c_m.norm() + sigma.R_b_c_rad.norm() + sigma.camera.norm() + sigma.readout_s + sigma.time_offset_s,
+  EXPECT_EQ(sigma.p_b_c_m.norm() + sigma.R_b_c_rad.norm() + sigma.camera.norm() + sigma.readout_s +
+                sigma.time_offset_s + sigma.accelerometer_axes.norm(),
             0);
 }
 

@@ -19,6 +19,7 @@ struct CalibrationSigma {
   Eigen::Vector3d R_b_c_rad = Eigen::Vector3d::Zero();                       ///< about the camera's axes
   Eigen::Matrix<double, 6, 1> camera = Eigen::Matrix<double, 6, 1>::Zero();  ///< fx fy cx cy [px], k1 k2
   double time_offset_s = 0, readout_s = 0;
+  Eigen::Matrix3d accelerometer_axes = Eigen::Matrix3d::Zero();
   /// Of all of it: T_b_c in the tangent space of a pose block, then the correction (StateBlocks.h).
   Eigen::Matrix<double, 14, 14> covariance = Eigen::Matrix<double, 14, 14>::Zero();
 };
@@ -27,10 +28,11 @@ struct CalibrationSigma {
 struct CalibrationEstimate {
   Camera camera;
   Pose T_b_c;
-  double time_offset_s = 0;               ///< an image with stamp t shows the world at t + offset
-  double readout_s = 0;                   ///< of a rolling shutter: from an image's first row to its last
-  double stamp_jitter_s = 0;              ///< standard deviation of the images' stamps; 0 where it does not matter
-  std::optional<CalibrationSigma> sigma;  ///< of the last window; empty while there is none
+  double time_offset_s = 0;   ///< an image with stamp t shows the world at t + offset
+  double readout_s = 0;       ///< of a rolling shutter: from an image's first row to its last
+  double stamp_jitter_s = 0;  ///< standard deviation of the images' stamps; 0 where it does not matter
+  Eigen::Matrix3d accelerometer_axes = Eigen::Matrix3d::Zero();  ///< Rig::accelerometer_axes as they should be
+  std::optional<CalibrationSigma> sigma;                         ///< of the last window; empty while there is none
 };
 
 /// Point-line visual-inertial odometry in a sliding window [Qin2018, Lim2021]: tracks and IMU in, poses and retired

@@ -17,6 +17,7 @@
 #include "lintel/factors/PriorFactors.h"
 #include "lintel/factors/RowMotion.h"
 #include "lintel/factors/StateBlocks.h"
+#include "lintel/inertial/AccelerometerAxes.h"
 #include "lintel/inertial/ImuAt.h"
 #include "lintel/inertial/Preintegration.h"
 
@@ -26,7 +27,7 @@ using FrameId = std::uint64_t;  ///< counts the frames that entered the window
 
 /// Names a parameter block of the window. Blocks move in memory, keys stay.
 struct BlockKey {
-  enum Kind { kPose, kMotion, kExtrinsics, kCorrection, kMeanBias, kDirection, kPoint, kLine };
+  enum Kind { kPose, kMotion, kExtrinsics, kCorrection, kMeanBias, kAxes, kDirection, kPoint, kLine };
   Kind kind = kPose;
   std::uint64_t id = 0;  ///< frame, direction, point or line; 0 for what is there once
   bool operator<(const BlockKey& o) const { return kind != o.kind ? kind < o.kind : id < o.id; }
@@ -155,9 +156,11 @@ class SlidingWindow {
   PoseBlock extrinsics;  ///< T_b_c
   CorrectionBlock correction = CorrectionBlock::Zero();
   MeanBiasBlock mean_bias = MeanBiasBlock::Zero();
-  std::vector<WindowPrior> priors;  ///< from marginalisation and from initialisation
-  WorldDrift drift;                 ///< since the first pose
-  double unrolled_s = 0;            ///< the readout by which sightings have been moved to their frames' times [s]
+  AxesBlock axes = AxesBlock::Zero();                ///< A, of the accelerometer (AccelerometerAxes.h)
+  Eigen::Vector3d mean_f = Eigen::Vector3d::Zero();  ///< AccelerometerAxes::mean_f, the same since the start
+  std::vector<WindowPrior> priors;                   ///< from marginalisation and from initialisation
+  WorldDrift drift;                                  ///< since the first pose
+  double unrolled_s = 0;  ///< the readout by which sightings have been moved to their frames' times [s]
 
   const Camera& camera() const { return camera_; }  ///< as calibrated; `correction` is on top
   Camera correctedCamera() const;
@@ -192,6 +195,7 @@ class SlidingWindow {
   /// What the IMU measured at the i-th frame; nothing where its samples are not known.
   std::optional<ImuAt> imuAtFrame(std::size_t i, double reach_s = kImuReach_s) const;
   double gravity_m_s2() const { return gravity_m_s2_; }
+  AccelerometerAxes accelerometerAxes() const;
 
   Pose T_w_c(const WindowFrame& f) const { return f.T_w_b() * T_b_c(); }
 

@@ -42,13 +42,13 @@ std::unique_ptr<PriorFactor> makeRestPrior(double velocity_sigma);
 std::unique_ptr<PriorFactor> makeStillPrior(const PoseBlock& earlier, double position_sigma);
 
 /// Standard deviations of what an accelerometer's axes are wrong by: those of a calibrated sensor, for scales (the
-/// diagonal) and directions [rad], unless an element has been `found` beyond three of them. Such elements are four
-/// times as uncertain, and the others twice.
-Eigen::Matrix3d axesSigmas(const Eigen::Matrix3d& found, double scale_sigma, double angle_sigma_rad);
+/// diagonal) and directions [rad], unless an element has been `found` beyond three of them. Such elements are eight
+/// times as uncertain, and the others four times.
+Eigen::Matrix3d axesSigmas(const Eigen::Matrix3d& found, const CalibrationParams& params);
 
-/// What the accelerometer's axes are wrong by about zero, with these standard deviations. It takes no robust loss:
-/// where the motion does not show some of them, errors of the images would lead them anywhere.
-std::unique_ptr<PriorFactor> makeAxesPrior(const Eigen::Matrix3d& sigmas);
+/// What the accelerometer's axes are wrong by about zero, with the standard deviations of axesSigmas(). It takes no
+/// robust loss: where the motion does not show some of them, errors of the images would lead them anywhere.
+PriorPart makeAxesPrior(const Eigen::Matrix3d& found, const CalibrationParams& params);
 
 /// The mean bias of a run about `mean` [m/s^2].
 std::unique_ptr<PriorFactor> makeMeanBiasPrior(const Eigen::Vector3d& mean, const InitializerParams& params);

@@ -41,9 +41,6 @@ struct RefinementParams {
   /// By how much the offset between the clocks of camera and IMU changes within a second, standard deviation; it may
   /// jump by more. 0: never.
   double offset_walk_s = 3e-4;
-  // what the axes of a calibrated accelerometer are wrong by, standard deviations; see axesSigmas()
-  double axes_scale_sigma = 0.002;
-  double axes_angle_sigma_rad = 0.005;
   // acceptance
   double max_moved_share = 1;  ///< keyframes may move by this share of the way travelled, and
   double max_moved_m = 0.30;   ///< this much more
@@ -70,8 +67,6 @@ struct RefinementParams {
     field("join_last_px", join_last_px, ReferencePixels{0.1, 1000});
     field("held_out_share", held_out_share, Range{0, 0.5});
     field("offset_walk_s", offset_walk_s, Range{0, 1});
-    field("axes_scale_sigma", axes_scale_sigma, Range{1e-9, 1});
-    field("axes_angle_sigma_rad", axes_angle_sigma_rad, Range{1e-9, 1});
     field("max_moved_share", max_moved_share, Range{0, 10});
     field("max_moved_m", max_moved_m, Range{0, 1000});
     field("max_turned_rad", max_turned_rad, Range{0, 3.2});
