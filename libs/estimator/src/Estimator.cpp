@@ -72,6 +72,7 @@ class Estimator::Impl {
                                  window_.readout_s(),
                                  stampJitter_s(),
                                  axes(),
+                                 window_.imuAxes().G,
                                  {}};
     if (tracking_) estimate.sigma = windowSigma(window_, params_, rig_.T_b_c).calibration;
     return estimate;
@@ -79,7 +80,7 @@ class Estimator::Impl {
 
  private:
   /// As they should be given.
-  Eigen::Matrix3d axes() const { return followedBy(rig_.accelerometer_axes, window_.accelerometerAxes().A); }
+  Eigen::Matrix3d axes() const { return followedBy(rig_.accelerometer_axes, window_.imuAxes().A); }
   bool entersWindow(const FrameTracks& tracks);
   bool appendImu(const FrameTracks& tracks, const ImuBatch& imu);
   WindowUpdate skipFrame(const FrameTracks& tracks);
@@ -187,7 +188,7 @@ WindowUpdate Estimator::Impl::skipFrame(const FrameTracks& tracks) {
   update.reason = "between window frames";
   if (!tracking_) return update;
   Preintegration imu(biasOf(window_.frames.back().motion.data()), noise_.now(), rig_.gravity_m_s2);
-  imu.append(withAxes(pending_imu_, window_.accelerometerAxes()));
+  imu.append(withAxes(pending_imu_, window_.imuAxes()));
   const InertialState state = propagated(stateOf(window_.frames.back()), imu);
   update.T_w_b = state.T_w_b;
   update.v_w_b = state.v_w_b;
@@ -212,7 +213,7 @@ void Estimator::Impl::addFrame(const FrameTracks& tracks) {
     frame.imu = std::make_shared<Preintegration>(biasOf(before.motion.data()), noise_.now(), rig_.gravity_m_s2);
     if (started_at_rest_) frame.imu->leaveOutCorrelatedNoise();
     frame.imu->append(pending_imu_);
-    const InertialState state = propagated(stateOf(before), withAxes(*frame.imu, window_.accelerometerAxes()));
+    const InertialState state = propagated(stateOf(before), withAxes(*frame.imu, window_.imuAxes()));
     frame.pose = toBlock(state.T_w_b);
     frame.motion = before.motion;
     frame.motion.segment<3>(kVelocityAt) = state.v_w_b;
@@ -305,8 +306,7 @@ void Estimator::Impl::addPosesBetween(const WindowFrame& from, const WindowFrame
   if (!to.imu) return;
   const InertialState state = stateOf(from);
   const std::vector<std::int64_t> times_ns = memory_.skippedBetween(from.t_ns, to.t_ns);
-  const std::vector<Preintegration> imu =
-      integratedTo(state.bias, withAxes(*to.imu, window_.accelerometerAxes()), times_ns);
+  const std::vector<Preintegration> imu = integratedTo(state.bias, withAxes(*to.imu, window_.imuAxes()), times_ns);
   for (std::size_t i = 0; i < times_ns.size(); ++i) {
     update.replaced.emplace_back(times_ns[i], propagated(state, imu[i]).T_w_b);
     update.replaced_covariances.push_back(propagatedCovariance(state, imu[i], covariance));

@@ -9,6 +9,7 @@
 
 #include "TestWindow.h"
 #include "lintel/estimator/Estimator.h"
+#include "lintel/estimator/StatePriors.h"
 #include "lintel/geometry/Alignment.h"
 #include "lintel/geometry/Rotation.h"
 
@@ -39,19 +40,23 @@ Rig wrongRig(const Rig& rig, const CalibrationParams& p, Draw& draw) {
   return wrong;
 }
 
-/// What a draw from the priors has the accelerometer's axes wrong by. The samples keep their mean over the first two
-/// seconds, about which the estimator's biases are.
-Eigen::Matrix3d turnAxes(const CalibrationParams& p, Draw& draw, TrackedFlight& flight) {
-  Eigen::Matrix3d A;
-  for (int i = 0; i < 9; ++i) A(i / 3, i % 3) = draw(i % 4 == 0 ? p.axes_scale_sigma : p.axes_angle_sigma_rad);
+/// What a draw from the priors has the IMU's axes wrong by. The accelerometer's samples keep their mean over the first
+/// two seconds, about which the estimator's biases are.
+ImuAxes turnAxes(const CalibrationParams& p, Draw& draw, TrackedFlight& flight) {
+  AxesBlock block = axesSigmas(AxesBlock::Zero(), p);
+  for (double& element : block) element = draw(element);
   Eigen::Vector3d sum = Eigen::Vector3d::Zero();
   double count = 0;
   for (std::size_t k = 0; k < 40; ++k)
     for (const ImuSample& sample : flight.sim.frames[k].imu) sum += sample.accel, ++count;
-  const Eigen::Matrix3d shown = (Eigen::Matrix3d::Identity() + A).inverse();
+  const ImuAxes axes = axesFromBlock(block.data(), sum / count);
+  const Eigen::Matrix3d I = Eigen::Matrix3d::Identity();
   for (SimulatedFrame& frame : flight.sim.frames)
-    for (ImuSample& sample : frame.imu) sample.accel = shown * (sample.accel + A * sum / count);
-  return A;
+    for (ImuSample& sample : frame.imu) {
+      sample.accel = (I + axes.A).inverse() * (sample.accel + axes.A * axes.mean_f);
+      sample.gyro = (I + axes.G).inverse() * sample.gyro;
+    }
+  return axes;
 }
 
 /// Another motion, later by `offset_s`.
@@ -138,11 +143,16 @@ void addState(const Vector15& e, const WindowUpdate& update, SquaredErrors& to) 
   to["accelerometer bias"] = squared(e.tail<3>(), P.bottomRightCorner<3, 3>());
 }
 
-void addCalibration(const CalibrationEstimate& e, const Rig& truth, double offset_s, const Eigen::Matrix3d& axes,
+void addCalibration(const CalibrationEstimate& e, const Rig& truth, double offset_s, const ImuAxes& axes,
                     SquaredErrors& to) {
   if (!e.sigma) return;
-  const Eigen::Array33d axes_error = (axes - e.accelerometer_axes).array() / e.sigma->accelerometer_axes.array();
-  to["axes"] = {axes_error.square().sum(), 9};
+  const auto inSigmas = [](const ImuAxes& error, const ImuAxes& sigma) {
+    return Eigen::VectorXd(toBlock(error).array() / toBlock(sigma).array());
+  };
+  const Eigen::VectorXd of_axes = inSigmas({axes.A - e.accelerometer_axes, {0, 0, 0}, axes.G - e.gyroscope_axes},
+                                           {e.sigma->accelerometer_axes, {0, 0, 0}, e.sigma->gyroscope_axes});
+  to["accelerometer's axes"] = {of_axes.head(kGyroAxesAt).squaredNorm(), kGyroAxesAt};
+  to["gyroscope's axes"] = {of_axes.tail(kAxesSize - kGyroAxesAt).squaredNorm(), kAxesSize - kGyroAxesAt};
   const Camera &c = e.camera, &t = truth.camera;
   Eigen::Matrix<double, 14, 1> error;
   error << truth.T_b_c.p - e.T_b_c.p, logRotation(e.T_b_c.q.conjugate() * truth.T_b_c.q), t.fx - c.fx, t.fy - c.fy,
@@ -229,7 +239,7 @@ ConsistencyFlight flyConsistently(std::uint64_t seed, const ConsistencySetting& 
   const double offset_s = draw(params.calibration.time_offset_sigma_s);
   TrackedFlight flight = flyLate(seed, setting, offset_s);
   const Rig rig = wrongRig(flight.rig, params.calibration, draw);
-  const Eigen::Matrix3d axes = turnAxes(params.calibration, draw, flight);
+  const ImuAxes axes = turnAxes(params.calibration, draw, flight);
   Estimator estimator(rig, params);
   ConsistencyFlight result;
   LandmarkComparison landmarks(flight, result);

@@ -28,7 +28,7 @@ TEST(EstimatorConsistency, ErrorsAreAsLargeAsTheirCovariancesSay) {
   }
   for (const char* name :
        {"position", "yaw", "roll, pitch", "velocity", "gyroscope bias", "accelerometer bias", "lever arm", "rotation",
-        "focal length", "principal point", "distortion", "time offset", "axes"}) {
+        "focal length", "principal point", "distortion", "time offset", "accelerometer's axes", "gyroscope's axes"}) {
     ASSERT_EQ(sums.count(name), 1u) << name;
     const auto [low, high] = boundsOfMean(kSeeds, freedoms[name]);
     const double mean = sums[name] / static_cast<double>(kSeeds);

@@ -16,7 +16,7 @@
 #include "lintel/factors/VanishingFactor.h"
 #include "lintel/geometry/Frames.h"
 #include "lintel/geometry/Rotation.h"
-#include "lintel/inertial/AccelerometerAxes.h"
+#include "lintel/inertial/ImuAxes.h"
 
 namespace lintel {
 namespace {
@@ -356,7 +356,7 @@ TEST(ImuFactor, Gradients) {
   expectGradients(ImuFactor(pre), {&kPoseManifold, nullptr, &kPoseManifold, nullptr, nullptr},
                   {pose_i.data(), motion_i.data(), pose_j.data(), motion_j.data(), mean.data()}, 1e-5);
   AxesBlock axes;
-  axes << 0.01, -0.02, 0, 0.05, -0.01, 0.03, 0, 0.02, 0.004;
+  axes << 0.01, -0.02, 0, 0.05, -0.01, 0.03, 0, 0.02, 0.004, 0.01, -0.02, 0.005, 0.01, -0.01, 0.02;
   expectGradients(AxesImuFactor(pre, kMean_f), {&kPoseManifold, nullptr, &kPoseManifold, nullptr, nullptr, nullptr},
                   {pose_i.data(), motion_i.data(), pose_j.data(), motion_j.data(), mean.data(), axes.data()}, 1e-5);
 }
@@ -368,17 +368,37 @@ TEST(AxesImuFactor, IsTheImuFactorOfCorrectedSamples) {
   MotionBlock motion;
   motion << 0.4, -0.2, 0.1, pre->bias().gyro, pre->bias().accel;
   const MeanBiasBlock mean(0.08, 0.02, 0.15);
-  Eigen::Matrix<double, 3, 3, Eigen::RowMajor> A;
-  A << 0.01, -0.02, 0, 0.05, -0.01, 0.03, 0, 0.02, 0.004;
-  const double* blocks[] = {pose_i.data(), motion.data(), pose_j.data(), motion.data(), mean.data(), A.data()};
-  Eigen::Matrix<double, 15, 1> r, corrected;
-  const ImuFactor as_measured(pre), right(std::make_shared<Preintegration>(withAxes(*pre, {A, kMean_f})));
-  ASSERT_TRUE(AxesImuFactor(pre, kMean_f).Evaluate(blocks, r.data(), nullptr));
-  ASSERT_TRUE(right.Evaluate(blocks, corrected.data(), nullptr));
-  // of other weights: the covariance depends on the samples
-  r.head<9>() = as_measured.sqrtInformation().inverse() * r.head<9>();
-  corrected.head<9>() = right.sqrtInformation().inverse() * corrected.head<9>();
-  EXPECT_LT((r - corrected).norm(), 1e-9 * r.norm());
+  ImuAxes axes{Eigen::Matrix3d::Zero(), kMean_f};
+  axes.A << 0.01, -0.02, 0, 0.05, -0.01, 0.03, 0, 0.02, 0.004;
+  const auto difference = [&] {
+    const AxesBlock block = toBlock(axes);
+    const double* blocks[] = {pose_i.data(), motion.data(), pose_j.data(), motion.data(), mean.data(), block.data()};
+    Eigen::Matrix<double, 15, 1> r, corrected;
+    const ImuFactor as_measured(pre), right(std::make_shared<Preintegration>(withAxes(*pre, axes)));
+    EXPECT_TRUE(AxesImuFactor(pre, kMean_f).Evaluate(blocks, r.data(), nullptr));
+    EXPECT_TRUE(right.Evaluate(blocks, corrected.data(), nullptr));
+    // of other weights: the covariance depends on the samples
+    r.head<9>() = as_measured.sqrtInformation().inverse() * r.head<9>();
+    corrected.head<9>() = right.sqrtInformation().inverse() * corrected.head<9>();
+    return (r - corrected).norm() / r.norm();
+  };
+  EXPECT_LT(difference(), 1e-9) << "linear in A";
+  axes.A.setZero();
+  axes.G.diagonal() << 0.02, -0.01, 0.01;
+  axes.G(0, 2) = axes.G(2, 0) = 0.02;
+  EXPECT_LT(difference(), 1e-3) << "to first order in G";
+}
+
+TEST(AxesBlock, HoldsBothSensors) {
+  ImuAxes axes;
+  axes.A << 1, 2, 3, 4, 5, 6, 7, 8, 9;
+  axes.G << 10, 13, 14, 13, 11, 15, 14, 15, 12;
+  const AxesBlock block = toBlock(axes);
+  for (int i = 0; i < kAxesSize; ++i) EXPECT_EQ(block[i], i + 1);
+  const ImuAxes same = axesFromBlock(block.data(), kMean_f);
+  EXPECT_EQ(same.A, axes.A);
+  EXPECT_EQ(same.G, axes.G);
+  EXPECT_EQ(same.mean_f, kMean_f);
 }
 
 }  // namespace

@@ -14,8 +14,6 @@ namespace lintel {
 
 namespace {
 
-using RowMajorMatrix3d = Eigen::Matrix<double, 3, 3, Eigen::RowMajor>;
-
 StateManifold* lineManifold() {
   static LineManifold manifold;
   return &manifold;
@@ -121,7 +119,7 @@ void BatchProblem::placeBlocks() {
     problem_->AddParameterBlock(at(directions_at_ + g * kDirectionSize), kDirectionSize, directionManifold());
   }
   placeMeanBiases();
-  Eigen::Map<RowMajorMatrix3d>(at(axes_at_)) = material_.axes.A;
+  Eigen::Map<AxesBlock>(at(axes_at_)) = toBlock(material_.axes);
   problem_->AddParameterBlock(at(axes_at_), kAxesSize);
   for (std::size_t k = 0; k < material_.keyframes.size(); ++k) {
     const RetiredKeyframe& keyframe = material_.keyframes[k];
@@ -144,7 +142,7 @@ void BatchProblem::addPriors() {
   };
   addParts(makeExtrinsicsPriors(estimator_.calibration, calibrated_.T_b_c), extrinsics_at_);
   addParts(makeCorrectionPriors(estimator_.calibration), correction_at_);
-  add(makeAxesPrior(material_.axes.A, estimator_.calibration).factor, axes_at_);
+  add(makeAxesPrior(toBlock(material_.axes), estimator_.calibration).factor, axes_at_);
   addCorrectionChanges();
   addMeanBiasWalk();
   for (std::size_t k = 0; k < material_.keyframes.size(); ++k) {
@@ -228,7 +226,7 @@ void BatchProblem::writeBack() {
   material_.rig.T_b_c = poseFromBlock(at(extrinsics_at_));
   material_.rig.T_b_c.q.normalize();
   material_.rig.camera = correctedCamera(calibrated_.camera, at(correction_at_));
-  material_.axes.A = Eigen::Map<RowMajorMatrix3d>(at(axes_at_));
+  material_.axes = axesFromBlock(at(axes_at_), material_.axes.mean_f);
   writeBackOffsets();
   for (std::size_t k = 0; k < material_.keyframes.size(); ++k) {
     RetiredKeyframe& keyframe = material_.keyframes[k];

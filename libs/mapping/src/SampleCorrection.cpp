@@ -14,7 +14,7 @@ Eigen::Vector3d meanSpecificForce(const std::vector<RetiredKeyframe>& keyframes)
   return count == 0 ? sum : sum / static_cast<double>(count);
 }
 
-void correctSamples(AccelerometerAxes& axes, std::vector<RetiredKeyframe>& keyframes) {
+void correctSamples(ImuAxes& axes, std::vector<RetiredKeyframe>& keyframes) {
   for (RetiredKeyframe& keyframe : keyframes) {
     if (keyframe.imu) keyframe.imu = std::make_shared<Preintegration>(withAxes(*keyframe.imu, axes));
     keyframe.axes = {};

@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "lintel/estimator/WindowUpdate.h"
-#include "lintel/inertial/AccelerometerAxes.h"
+#include "lintel/inertial/ImuAxes.h"
 
 namespace lintel {
 
@@ -12,6 +12,6 @@ namespace lintel {
 Eigen::Vector3d meanSpecificForce(const std::vector<RetiredKeyframe>& keyframes);
 
 /// The keyframes' samples become those of right axes, and the axes right ones.
-void correctSamples(AccelerometerAxes& axes, std::vector<RetiredKeyframe>& keyframes);
+void correctSamples(ImuAxes& axes, std::vector<RetiredKeyframe>& keyframes);
 
 }  // namespace lintel

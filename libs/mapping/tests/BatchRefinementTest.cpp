@@ -546,6 +546,23 @@ TEST_F(BatchRefinementTest, WrongAxesOfTheAccelerometerAreFoundAndItsSamplesCorr
   EXPECT_LT(spread(material_), 0.3 * spread(held)) << "what was taken for a bias that changes";
 }
 
+TEST_F(BatchRefinementTest, WrongAxesOfTheGyroscopeAreFound) {
+  Eigen::Matrix3d G;
+  G << 0.015, 0.01, 0, 0.01, -0.02, -0.01, 0, -0.01, 0.01;
+  for (RetiredKeyframe& keyframe : material_.keyframes) {
+    if (!keyframe.imu) continue;
+    ImuBatch samples = keyframe.imu->samples();
+    for (ImuSample& sample : samples) sample.gyro = (Eigen::Matrix3d::Identity() + G).inverse() * sample.gyro;
+    auto imu = std::make_shared<Preintegration>(keyframe.imu->bias(), keyframe.imu->noise());
+    imu->append(samples);
+    keyframe.imu = imu;
+  }
+  const RefinementReport report = refine(material_);
+  EXPECT_TRUE(report.accepted) << report.verdict;
+  EXPECT_LT((report.gyro_axes - G).norm(), 0.3 * G.norm()) << report.gyro_axes;
+  EXPECT_LT(report.axes.cwiseAbs().maxCoeff(), 0.01) << "the accelerometer's are right";
+}
+
 TEST_F(BatchRefinementTest, AxesBeyondThePriorOfACalibratedSensorAreHeldLessFirmly) {
   estimator_.calibration.axes_scale_sigma = 0.0004;
   estimator_.calibration.axes_angle_sigma_rad = 0.001;

@@ -47,6 +47,19 @@ std::string axesRemark(const Rig& given, const Eigen::Matrix3d& A) {
   return text;
 }
 
+std::string gyroAxesRemark(const Eigen::Matrix3d& G) {
+  constexpr double kLeast = 0.01;  // ten standard deviations of a calibrated sensor's prior
+  const double wrong = G.cwiseAbs().maxCoeff();
+  if (!(wrong > kLeast)) return {};
+  char text[200];
+  std::snprintf(
+      text, sizeof text,
+      "the gyroscope's axes are wrong by up to %.1f %% (not square to each other, or of wrong scale); corrected "
+      "on the way",
+      100 * wrong);
+  return text;
+}
+
 std::string stampRemark(const CalibrationEstimate& estimate) {
   if (!(estimate.stamp_jitter_s > 0)) return {};
   char text[300];

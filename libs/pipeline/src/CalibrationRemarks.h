@@ -17,6 +17,9 @@ std::string readoutRemark(const Rig& given, const CalibrationEstimate& estimate)
 /// than the prior explains. Empty: nothing.
 std::string axesRemark(const Rig& given, const Eigen::Matrix3d& A);
 
+/// The same of the gyroscope's, `G` (ImuAxes).
+std::string gyroAxesRemark(const Eigen::Matrix3d& G);
+
 /// What it found about the images' stamps: that they are off, each by its own amount. Empty: nothing.
 std::string stampRemark(const CalibrationEstimate& estimate);
 

@@ -159,9 +159,12 @@ OdometryResult runOdometry(Recording& recording, const Configuration& configurat
     result.remarks.push_back("noise of the IMU: " + noise);
   if (const std::string readout = readoutRemark(recording.rig(), result.window_calibration); !readout.empty())
     result.remarks.push_back(readout);
-  const Eigen::Matrix3d& axes =
-      result.refinement.accepted ? result.refinement.axes : result.window_calibration.accelerometer_axes;
-  if (const std::string wrong = axesRemark(recording.rig(), axes); !wrong.empty()) result.remarks.push_back(wrong);
+  const bool refined = result.refinement.accepted;
+  const CalibrationEstimate& last = result.window_calibration;
+  for (const std::string& wrong :
+       {axesRemark(recording.rig(), refined ? result.refinement.axes : last.accelerometer_axes),
+        gyroAxesRemark(refined ? result.refinement.gyro_axes : last.gyroscope_axes)})
+    if (!wrong.empty()) result.remarks.push_back(wrong);
   if (const std::string stamps = stampRemark(result.window_calibration); !stamps.empty())
     result.remarks.push_back(stamps);
   if (const std::string vehicle = vehicleRemark(result.statistics.front_end.vehicle_share); !vehicle.empty())

@@ -126,6 +126,7 @@ Json refinementJson(const OdometryResult& result) {
           {"turned_rad", r.turned_rad},
           {"scale_sigma", r.scale_sigma},
           {"accelerometer_axes", axesJson(r.axes)},
+          {"gyroscope_axes", axesJson(r.gyro_axes)},
           {"time_offset_change_s", {r.least_offset_s, r.most_offset_s}}};
 }
 
@@ -153,12 +154,14 @@ Json calibrationJson(const OdometryResult& result, const Rig& given) {
   const CalibrationSigma& s = *last.sigma;
   json["window"] = cameraJson(last.camera, last.T_b_c, last.time_offset_s, last.readout_s);
   json["window"]["accelerometer_axes"] = axesJson(last.accelerometer_axes);
+  json["window"]["gyroscope_axes"] = axesJson(last.gyroscope_axes);
   json["window"]["sigma"] = {{"intrinsics_px", {s.camera[0], s.camera[1], s.camera[2], s.camera[3]}},
                              {"distortion", {s.camera[4], s.camera[5]}},
                              {"p_b_c_m", {s.p_b_c_m.x(), s.p_b_c_m.y(), s.p_b_c_m.z()}},
                              {"R_b_c_rad", {s.R_b_c_rad.x(), s.R_b_c_rad.y(), s.R_b_c_rad.z()}},
                              {"time_offset_s", s.time_offset_s},
                              {"accelerometer_axes", axesJson(s.accelerometer_axes)},
+                             {"gyroscope_axes", axesJson(s.gyroscope_axes)},
                              {"readout_s", s.readout_s}};
   return json;
 }

@@ -54,6 +54,14 @@ TEST(AxesRemark, GivesAxesThatAreWrong) {
   EXPECT_THAT(axesRemark(given, axes), IsEmpty()) << "nearly what was given";
 }
 
+TEST(GyroAxesRemark, SaysHowFarTheAxesAreOff) {
+  Eigen::Matrix3d G = Eigen::Matrix3d::Zero();
+  G(0, 2) = G(2, 0) = 0.009;
+  EXPECT_THAT(gyroAxesRemark(G), IsEmpty());
+  G(1, 1) = -0.021;
+  EXPECT_THAT(gyroAxesRemark(G), HasSubstr("wrong by up to 2.1 %"));
+}
+
 TEST(StampRemark, SaysHowFarStampsAreOff) {
   CalibrationEstimate estimate;
   EXPECT_THAT(stampRemark(estimate), IsEmpty());

@@ -27,10 +27,6 @@ bool SlidingWindow::contains(FrameId id) const {
   return std::any_of(frames.begin(), frames.end(), [id](const WindowFrame& f) { return f.id == id; });
 }
 
-AccelerometerAxes SlidingWindow::accelerometerAxes() const {
-  return {Eigen::Map<const Eigen::Matrix<double, 3, 3, Eigen::RowMajor>>(axes.data()), mean_f};
-}
-
 const WindowFrame& SlidingWindow::frame(FrameId id) const {
   for (const WindowFrame& f : frames)
     if (f.id == id) return f;

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 namespace lintel {
 
@@ -66,20 +67,24 @@ PriorParts makeCorrectionPriors(const CalibrationParams& p) {
   return parts;
 }
 
-Eigen::Matrix3d axesSigmas(const Eigen::Matrix3d& found, const CalibrationParams& p) {
+AxesBlock axesSigmas(const AxesBlock& found, const CalibrationParams& p) {
   constexpr double kRefuted = 3, kWider = 8, kOthers = 4;
-  Eigen::Matrix3d sigmas = Eigen::Matrix3d::Constant(p.axes_angle_sigma_rad);
-  sigmas.diagonal().setConstant(p.axes_scale_sigma);
-  const Eigen::Array<bool, 3, 3> refuted = found.cwiseAbs().array() > kRefuted * sigmas.array();
-  if (!refuted.any()) return sigmas;
-  return refuted.select(kWider * sigmas, kOthers * sigmas);
+  ImuAxes calibrated;
+  calibrated.A.setConstant(p.axes_angle_sigma_rad);
+  calibrated.A.diagonal().setConstant(p.axes_scale_sigma);
+  calibrated.G.setConstant(p.gyro_axes_angle_sigma_rad);
+  calibrated.G.diagonal().setConstant(p.gyro_axes_scale_sigma);
+  AxesBlock sigmas = toBlock(calibrated);
+  const Eigen::Array<bool, kAxesSize, 1> refuted = found.cwiseAbs().array() > kRefuted * sigmas.array();
+  for (const auto& [at, size] : {std::pair(0, kGyroAxesAt), std::pair(kGyroAxesAt, kAxesSize - kGyroAxesAt)})
+    if (refuted.segment(at, size).any())
+      for (int i = at; i < at + size; ++i) sigmas[i] *= refuted[i] ? kWider : kOthers;
+  return sigmas;
 }
 
-PriorPart makeAxesPrior(const Eigen::Matrix3d& found, const CalibrationParams& p) {
-  const Eigen::Matrix3d sigmas = p.refine_axes ? axesSigmas(found, p) : Eigen::Matrix3d::Constant(kHeld);
-  const Eigen::Matrix3d rows = sigmas.transpose();  // the block has them row by row
-  return {makeBlockPrior(std::make_shared<VectorManifold>(kAxesSize), AxesBlock::Zero(), AxesBlock::Map(rows.data())),
-          p.refine_axes};
+PriorPart makeAxesPrior(const AxesBlock& found, const CalibrationParams& p) {
+  const AxesBlock sigmas = p.refine_axes ? axesSigmas(found, p) : AxesBlock::Constant(kHeld);
+  return {makeBlockPrior(std::make_shared<VectorManifold>(kAxesSize), AxesBlock::Zero(), sigmas), p.refine_axes};
 }
 
 std::unique_ptr<PriorFactor> makeRestPrior(double velocity_sigma) {

@@ -76,7 +76,7 @@ void WindowFactors::addCalibrationPriors(const CalibrationParams& params, const 
 }
 
 void WindowFactors::addAxesPrior(const CalibrationParams& params) {
-  PriorPart part = makeAxesPrior(window_.accelerometerAxes().A, params);
+  PriorPart part = makeAxesPrior(window_.axes, params);
   if (part.refined) add(std::move(part.factor), {{BlockKey::kAxes, 0}});
 }
 

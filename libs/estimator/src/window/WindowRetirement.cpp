@@ -95,8 +95,7 @@ void retireTracks(SlidingWindow& window, FrameId leaving, bool keyframe, WindowU
 
 void retireKeyframe(const SlidingWindow& window, const WindowFrame& frame, WindowUpdate& update) {
   update.keyframes.push_back({frame.id, frame.t_ns, frame.T_w_b(), velocityOf(frame.motion.data()),
-                              biasOf(frame.motion.data()), frame.imu, frame.at_rest, frame.blind,
-                              window.accelerometerAxes()});
+                              biasOf(frame.motion.data()), frame.imu, frame.at_rest, frame.blind, window.imuAxes()});
 }
 
 void retireAll(SlidingWindow& window, WindowUpdate& update) {

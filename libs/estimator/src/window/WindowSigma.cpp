@@ -45,8 +45,11 @@ WindowSigma windowSigma(const SlidingWindow& window, const EstimatorParams& para
     sigma.calibration.R_b_c_rad = pose.tail<3>();
   }
   const Eigen::VectorXd axes = marginals.sigmas({BlockKey::kAxes, 0});
-  if (params.calibration.refine_axes && axes.size() == kAxesSize)
-    sigma.calibration.accelerometer_axes = Eigen::Map<const Eigen::Matrix<double, 3, 3, Eigen::RowMajor>>(axes.data());
+  if (params.calibration.refine_axes && axes.size() == kAxesSize) {
+    const ImuAxes of_axes = axesFromBlock(axes.data(), Eigen::Vector3d::Zero());
+    sigma.calibration.accelerometer_axes = of_axes.A;
+    sigma.calibration.gyroscope_axes = of_axes.G;
+  }
   const Eigen::VectorXd correction = marginals.sigmas({BlockKey::kCorrection, 0});
   if (correction.size() != kCorrectionSize) return sigma;
   sigma.calibration.covariance = jointCovariance(marginals);

@@ -104,50 +104,55 @@ CalibrationParams axesParams() {
   CalibrationParams p;
   p.axes_scale_sigma = 0.002;
   p.axes_angle_sigma_rad = 0.01;
+  p.gyro_axes_scale_sigma = 0.003;
+  p.gyro_axes_angle_sigma_rad = 0.004;
   return p;
 }
 
 TEST(AxesPrior, ScalesAndDirectionsHaveTheirOwnSigmas) {
-  const auto prior = makeAxesPrior(Eigen::Matrix3d::Zero(), axesParams()).factor;
+  const auto prior = makeAxesPrior(AxesBlock::Zero(), axesParams()).factor;
   AxesBlock axes = AxesBlock::Zero();
-  axes[4] = 0.006;  // the scale of y
-  axes[5] = -0.02;  // y shows what is along z
+  axes[4] = 0.006;                // the scale of y
+  axes[5] = -0.02;                // y shows what is along z
+  axes[kGyroAxesAt + 2] = 0.012;  // the scale of the gyroscope's z
+  axes[kGyroAxesAt + 3] = 0.004;  // what its x and y have of each other
   Eigen::VectorXd r(prior->num_residuals());
   const double* block = axes.data();
   ASSERT_TRUE(prior->Evaluate(&block, r.data(), nullptr));
-  EXPECT_NEAR(r.norm(), std::hypot(3, 2), 1e-12);
-  EXPECT_NEAR(r.cwiseAbs().maxCoeff(), 3, 1e-12);
+  EXPECT_NEAR(r.squaredNorm(), 3 * 3 + 2 * 2 + 4 * 4 + 1, 1e-9);
+  EXPECT_NEAR(r.cwiseAbs().maxCoeff(), 4, 1e-12);
 }
 
-TEST(AxesPrior, WhereAnElementIsFoundBeyondThreeStandardDeviationsAllAreLessCertain) {
-  Eigen::Matrix3d found = Eigen::Matrix3d::Zero(), expected = Eigen::Matrix3d::Constant(0.01);
-  expected.diagonal().setConstant(0.002);
-  found(0, 1) = 0.029;
-  EXPECT_TRUE(axesSigmas(found, axesParams()).isApprox(expected)) << "a calibrated sensor";
-  found(1, 0) = -0.031;
-  found(2, 2) = 0.0061;
-  expected *= 4;
-  expected(1, 0) = 0.08;
-  expected(2, 2) = 0.016;
-  EXPECT_TRUE(axesSigmas(found, axesParams()).isApprox(expected)) << axesSigmas(found, axesParams());
-  AxesBlock axes = AxesBlock::Zero();
-  axes[3] = 0.08;  // (1, 0), row by row
-  Eigen::VectorXd r(9);
-  const double* block = axes.data();
-  ASSERT_TRUE(makeAxesPrior(found, axesParams()).factor->Evaluate(&block, r.data(), nullptr));
-  EXPECT_NEAR(r.norm(), 1, 1e-12);
+TEST(AxesPrior, WhereAnElementIsFoundBeyondThreeStandardDeviationsAllOfItsSensorAreLessCertain) {
+  AxesBlock found = AxesBlock::Zero();
+  found[1] = 0.029;
+  const AxesBlock calibrated = axesSigmas(AxesBlock::Zero(), axesParams());
+  EXPECT_EQ(axesSigmas(found, axesParams()), calibrated);
+  found[3] = -0.031;
+  found[8] = 0.0061;
+  AxesBlock expected = calibrated;
+  expected.head<kGyroAxesAt>() *= 4;
+  expected[3] = 8 * calibrated[3];
+  expected[8] = 8 * calibrated[8];
+  EXPECT_TRUE(axesSigmas(found, axesParams()).isApprox(expected)) << axesSigmas(found, axesParams()).transpose();
+  found.setZero();
+  found[kGyroAxesAt] = 0.01;
+  expected = calibrated;
+  expected.tail<kAxesSize - kGyroAxesAt>() *= 4;
+  expected[kGyroAxesAt] = 8 * calibrated[kGyroAxesAt];
+  EXPECT_TRUE(axesSigmas(found, axesParams()).isApprox(expected)) << axesSigmas(found, axesParams()).transpose();
 }
 
 TEST(AxesPrior, HoldsAxesThatAreNotRefined) {
   CalibrationParams params = axesParams();
   params.refine_axes = false;
-  const PriorPart part = makeAxesPrior(Eigen::Matrix3d::Constant(0.1), params);
+  const PriorPart part = makeAxesPrior(AxesBlock::Constant(0.1), params);
   EXPECT_FALSE(part.refined);
   AxesBlock axes = AxesBlock::Constant(1e-9);
-  Eigen::VectorXd r(9);
+  Eigen::VectorXd r(kAxesSize);
   const double* block = axes.data();
   ASSERT_TRUE(part.factor->Evaluate(&block, r.data(), nullptr));
-  EXPECT_TRUE(r.isApprox(Eigen::VectorXd::Ones(9), 1e-9)) << r.transpose();
+  EXPECT_TRUE(r.isApprox(Eigen::VectorXd::Ones(kAxesSize), 1e-9)) << r.transpose();
 }
 
 TEST(ParamsFor, ADistortionOfZeroIsNotKnown) {

@@ -47,6 +47,8 @@ TEST(WindowSigma, ObservationsNarrowThePriorAndNothingWidensIt) {
   EXPECT_GT(sigma.accelerometer_axes.minCoeff(), 0);
   EXPECT_LT(sigma.accelerometer_axes.diagonal().maxCoeff(), prior.axes_scale_sigma * slack);
   EXPECT_LT(sigma.accelerometer_axes.maxCoeff(), prior.axes_angle_sigma_rad * slack);
+  EXPECT_GT(sigma.gyroscope_axes.minCoeff(), 0);
+  EXPECT_LT(sigma.gyroscope_axes.maxCoeff(), prior.gyro_axes_scale_sigma * slack);
   EXPECT_GT(all.bias.gyro.minCoeff(), 0);
   EXPECT_LT(all.bias.gyro.maxCoeff(), 0.05) << "the turning of the images shows it";
   EXPECT_GT(all.bias.accel.minCoeff(), 0);
@@ -60,7 +62,7 @@ TEST(WindowSigma, WhatIsHeldHasNone) {
   const WindowSigma all = windowSigma(window, params, window.T_b_c());
   const CalibrationSigma& sigma = all.calibration;
   EXPECT_EQ(sigma.p_b_c_m.norm() + sigma.R_b_c_rad.norm() + sigma.camera.norm() + sigma.readout_s +
-                sigma.time_offset_s + sigma.accelerometer_axes.norm(),
+                sigma.time_offset_s + sigma.accelerometer_axes.norm() + sigma.gyroscope_axes.norm(),
             0);
 }
 

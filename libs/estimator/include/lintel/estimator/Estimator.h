@@ -19,7 +19,7 @@ struct CalibrationSigma {
   Eigen::Vector3d R_b_c_rad = Eigen::Vector3d::Zero();                       ///< about the camera's axes
   Eigen::Matrix<double, 6, 1> camera = Eigen::Matrix<double, 6, 1>::Zero();  ///< fx fy cx cy [px], k1 k2
   double time_offset_s = 0, readout_s = 0;
-  Eigen::Matrix3d accelerometer_axes = Eigen::Matrix3d::Zero();
+  Eigen::Matrix3d accelerometer_axes = Eigen::Matrix3d::Zero(), gyroscope_axes = Eigen::Matrix3d::Zero();
   /// Of all of it: T_b_c in the tangent space of a pose block, then the correction (StateBlocks.h).
   Eigen::Matrix<double, 14, 14> covariance = Eigen::Matrix<double, 14, 14>::Zero();
 };
@@ -32,6 +32,7 @@ struct CalibrationEstimate {
   double readout_s = 0;       ///< of a rolling shutter: from an image's first row to its last
   double stamp_jitter_s = 0;  ///< standard deviation of the images' stamps; 0 where it does not matter
   Eigen::Matrix3d accelerometer_axes = Eigen::Matrix3d::Zero();  ///< Rig::accelerometer_axes as they should be
+  Eigen::Matrix3d gyroscope_axes = Eigen::Matrix3d::Zero();      ///< ImuAxes::G
   std::optional<CalibrationSigma> sigma;                         ///< of the last window; empty while there is none
 };
 

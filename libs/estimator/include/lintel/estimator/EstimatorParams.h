@@ -49,7 +49,7 @@ struct CalibrationParams {
   bool refine_camera = true;   ///< fx fy cx cy k1 k2
   bool refine_readout = true;  ///< of a rolling shutter
   bool refine_time_offset = true;
-  bool refine_axes = true;        ///< of the accelerometer: scales and directions (AccelerometerAxes.h)
+  bool refine_axes = true;        ///< of the IMU: scales and directions (ImuAxes.h)
   bool find_stamp_jitter = true;  ///< stamps that are off each by its own amount are counted as noise of the IMU
   double extrinsic_rotation_sigma_rad = 0.005;
   double extrinsic_translation_sigma_m = 0.005;
@@ -58,9 +58,11 @@ struct CalibrationParams {
   double distortion_sigma = 0.003;
   double readout_sigma_s = 0.0002;  ///< from an image's first row to its last
   double time_offset_sigma_s = 0.002;
-  // what the axes of a calibrated accelerometer are wrong by, in the window and in the refinement; see axesSigmas()
-  double axes_scale_sigma = 0.001;
+  // what the axes of calibrated sensors are wrong by, in the window and in the refinement; see axesSigmas()
+  double axes_scale_sigma = 0.001;  ///< of the accelerometer
   double axes_angle_sigma_rad = 0.0025;
+  double gyro_axes_scale_sigma = 0.001;
+  double gyro_axes_angle_sigma_rad = 0.001;
   double loss_width = 3;  ///< Cauchy width of each part's prior, in standard deviations
 
   template <class F>
@@ -80,6 +82,8 @@ struct CalibrationParams {
     field("time_offset_sigma_s", time_offset_sigma_s, Range{1e-9, 1});
     field("axes_scale_sigma", axes_scale_sigma, Range{1e-9, 1});
     field("axes_angle_sigma_rad", axes_angle_sigma_rad, Range{1e-9, 1});
+    field("gyro_axes_scale_sigma", gyro_axes_scale_sigma, Range{1e-9, 1});
+    field("gyro_axes_angle_sigma_rad", gyro_axes_angle_sigma_rad, Range{1e-9, 1});
     field("loss_width", loss_width, Range{0.1, 1000000});
   }
 };

@@ -17,8 +17,8 @@
 #include "lintel/factors/PriorFactors.h"
 #include "lintel/factors/RowMotion.h"
 #include "lintel/factors/StateBlocks.h"
-#include "lintel/inertial/AccelerometerAxes.h"
 #include "lintel/inertial/ImuAt.h"
+#include "lintel/inertial/ImuAxes.h"
 #include "lintel/inertial/Preintegration.h"
 
 namespace lintel {
@@ -156,8 +156,8 @@ class SlidingWindow {
   PoseBlock extrinsics;  ///< T_b_c
   CorrectionBlock correction = CorrectionBlock::Zero();
   MeanBiasBlock mean_bias = MeanBiasBlock::Zero();
-  AxesBlock axes = AxesBlock::Zero();                ///< A, of the accelerometer (AccelerometerAxes.h)
-  Eigen::Vector3d mean_f = Eigen::Vector3d::Zero();  ///< AccelerometerAxes::mean_f, the same since the start
+  AxesBlock axes = AxesBlock::Zero();
+  Eigen::Vector3d mean_f = Eigen::Vector3d::Zero();  ///< ImuAxes::mean_f, the same since the start
   std::vector<WindowPrior> priors;                   ///< from marginalisation and from initialisation
   WorldDrift drift;                                  ///< since the first pose
   double unrolled_s = 0;  ///< the readout by which sightings have been moved to their frames' times [s]
@@ -195,7 +195,7 @@ class SlidingWindow {
   /// What the IMU measured at the i-th frame; nothing where its samples are not known.
   std::optional<ImuAt> imuAtFrame(std::size_t i, double reach_s = kImuReach_s) const;
   double gravity_m_s2() const { return gravity_m_s2_; }
-  AccelerometerAxes accelerometerAxes() const;
+  ImuAxes imuAxes() const { return axesFromBlock(axes.data(), mean_f); }
 
   Pose T_w_c(const WindowFrame& f) const { return f.T_w_b() * T_b_c(); }
 

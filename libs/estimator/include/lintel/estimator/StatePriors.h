@@ -41,14 +41,14 @@ std::unique_ptr<PriorFactor> makeRestPrior(double velocity_sigma);
 /// Two poses at one position, to within `position_sigma` [m]; their pose blocks, the earlier one first.
 std::unique_ptr<PriorFactor> makeStillPrior(const PoseBlock& earlier, double position_sigma);
 
-/// Standard deviations of what an accelerometer's axes are wrong by: those of a calibrated sensor, for scales (the
-/// diagonal) and directions [rad], unless an element has been `found` beyond three of them. Such elements are eight
-/// times as uncertain, and the others four times.
-Eigen::Matrix3d axesSigmas(const Eigen::Matrix3d& found, const CalibrationParams& params);
+/// Standard deviations of what the axes of an IMU are wrong by (the axes block): those of calibrated sensors, for
+/// scales and directions [rad], unless an element of the sensor has been `found` beyond three of them. Such elements
+/// are eight times as uncertain, and the sensor's others four times.
+AxesBlock axesSigmas(const AxesBlock& found, const CalibrationParams& params);
 
-/// What the accelerometer's axes are wrong by about zero, with the standard deviations of axesSigmas(). It takes no
-/// robust loss: where the motion does not show some of them, errors of the images would lead them anywhere.
-PriorPart makeAxesPrior(const Eigen::Matrix3d& found, const CalibrationParams& params);
+/// The axes block about zero, with the standard deviations of axesSigmas(). It takes no robust loss: where the motion
+/// does not show some of it, errors of the images would lead them anywhere.
+PriorPart makeAxesPrior(const AxesBlock& found, const CalibrationParams& params);
 
 /// The mean bias of a run about `mean` [m/s^2].
 std::unique_ptr<PriorFactor> makeMeanBiasPrior(const Eigen::Vector3d& mean, const InitializerParams& params);

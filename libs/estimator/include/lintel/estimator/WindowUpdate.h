@@ -23,7 +23,7 @@ struct RetiredKeyframe {
   ImuBias bias;
   std::shared_ptr<const Preintegration> imu;  ///< from the keyframe before; null for the first of a run
   bool at_rest = false, blind = false;
-  AccelerometerAxes axes;      ///< of its samples, as the window knew them when the keyframe left it
+  ImuAxes axes;                ///< of its samples, as the window knew them when the keyframe left it
   double offset_change_s = 0;  ///< what the offset between the clocks has beside that of all keyframes
 };
 

@@ -6,6 +6,7 @@
 #include "lintel/geometry/Camera.h"
 #include "lintel/geometry/PluckerLine.h"
 #include "lintel/geometry/Pose.h"
+#include "lintel/inertial/ImuAxes.h"
 #include "lintel/inertial/Preintegration.h"
 
 namespace lintel {
@@ -21,7 +22,7 @@ namespace lintel {
 //                       with B = tangentBasis(d)
 //   correction 8        what the calibrated camera is wrong by: fx fy cx cy [px], k1 k2, readout [s], time offset [s]
 //   mean bias  3        what bias_accel is without correlated noise [m/s^2] (ImuNoise)
-//   axes       9        what the accelerometer's axes are wrong by, row by row (AccelerometerAxes.h)
+//   axes       15       what the IMU's axes are wrong by (ImuAxes.h): A row by row, then xx yy zz xy xz yz of G
 constexpr int kPoseSize = 7, kPoseTangent = 6;
 constexpr int kMotionSize = 9, kVelocityAt = 0, kBiasGyroAt = 3, kBiasAccelAt = 6;
 constexpr int kLineSize = 5, kLineTangent = 4;
@@ -29,7 +30,7 @@ constexpr int kPointSize = 4, kPointTangent = 3;
 constexpr int kDirectionSize = 3, kDirectionTangent = 2;
 constexpr int kCorrectionSize = 8, kReadoutAt = 6, kTimeOffsetAt = 7;
 constexpr int kMeanBiasSize = 3;
-constexpr int kAxesSize = 9;
+constexpr int kAxesSize = 15, kGyroAxesAt = 9;
 
 /// The part of a correction that a sighting depends on by itself: all but the time offset, which moves the camera of a
 /// whole image.
@@ -55,6 +56,8 @@ PoseBlock toBlock(const Pose& pose);
 Pose poseFromBlock(const double* b);
 LineBlock toBlock(const OrthonormalLine& line);
 OrthonormalLine lineFromBlock(const double* b);
+AxesBlock toBlock(const ImuAxes& axes);
+ImuAxes axesFromBlock(const double* b, const Eigen::Vector3d& mean_f);
 Eigen::Vector3d velocityOf(const double* motion);
 ImuBias biasOf(const double* motion);
 

@@ -9,7 +9,7 @@
 
 #include "lintel/core/Rig.h"
 #include "lintel/estimator/WindowUpdate.h"
-#include "lintel/inertial/AccelerometerAxes.h"
+#include "lintel/inertial/ImuAxes.h"
 #include "lintel/mapping/ErrorDraws.h"
 #include "lintel/mapping/MapPieces.h"
 
@@ -86,7 +86,7 @@ struct LineRecord {
 struct MapMaterial {
   Rig rig;                                  ///< calibration that the poses belong to
   double time_offset_s = 0;                 ///< an image with stamp t shows the world at t + offset
-  AccelerometerAxes axes;                   ///< of the samples of the keyframes
+  ImuAxes axes;                             ///< of the samples of the keyframes
   std::vector<RetiredKeyframe> keyframes;   ///< ascending id and time
   std::vector<MapPiece> pieces;             ///< ascending; empty: the IMU leads through all keyframes, or none is known
   std::vector<CameraErrors> camera_errors;  ///< of the keyframes, in their order; empty: not known

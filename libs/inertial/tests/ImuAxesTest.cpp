@@ -1,9 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "lintel/inertial/AccelerometerAxes.h"
+#include "lintel/inertial/ImuAxes.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <utility>
+
+#include "lintel/geometry/Rotation.h"
 
 namespace lintel {
 namespace {
@@ -23,10 +26,10 @@ Preintegration turning() {
   return imu;
 }
 
-TEST(AccelerometerAxes, OfASensorThatStandsStillTheyAddToWhatItMeasures) {
+TEST(ImuAxes, OfASensorThatStandsStillTheyAddToWhatItMeasures) {
   Preintegration imu({}, {});
   for (int i = 0; i <= 100; ++i) imu.append({{i * std::int64_t{10'000'000}, {0, 0, 0}, {1, 2, 10}}});
-  AccelerometerAxes axes;
+  ImuAxes axes;
   axes.A(1, 2) = 0.03;  // y shows 3 % less than it should of what is along z
   const Preintegration corrected = withAxes(imu, axes);
   EXPECT_TRUE(corrected.deltaV().isApprox(Eigen::Vector3d(1, 2.3, 10), 1e-12));
@@ -35,20 +38,41 @@ TEST(AccelerometerAxes, OfASensorThatStandsStillTheyAddToWhatItMeasures) {
   EXPECT_TRUE(withAxes(imu, axes).deltaV().isApprox(Eigen::Vector3d(1, 2, 10), 1e-12)) << "a bias may be all of it";
 }
 
+/// By numeric differences.
+TEST(ImuAxes, TheJacobianByTheGyroscopesAxesIsThatOfTheDeltas) {
+  const Preintegration imu = turning();
+  const AxesJacobian J = axesJacobian(imu, kMean_f);
+  constexpr double kStep = 1e-5;
+  const std::pair<int, int> elements[] = {{0, 0}, {1, 1}, {2, 2}, {0, 1}, {0, 2}, {1, 2}};
+  for (int i = 0; i < 6; ++i) {
+    const auto moved = [&](double step) {
+      ImuAxes axes;
+      axes.G(elements[i].first, elements[i].second) = axes.G(elements[i].second, elements[i].first) = step;
+      return withAxes(imu, axes);
+    };
+    const Preintegration more = moved(kStep), less = moved(-kStep);
+    Eigen::Matrix<double, 9, 1> numeric;
+    numeric << logRotation(less.deltaR().conjugate() * more.deltaR()), more.deltaV() - less.deltaV(),
+        more.deltaP() - less.deltaP();
+    numeric /= 2 * kStep;
+    EXPECT_LT((J.col(9 + i) - numeric).norm(), 1e-6 * numeric.norm()) << i;
+  }
+}
+
 /// Not only to first order.
-TEST(AccelerometerAxes, TheJacobianGivesTheDeltasOfAnyAxes) {
+TEST(ImuAxes, TheJacobianGivesTheDeltasOfAnyAxes) {
   const Preintegration imu = turning();
   Eigen::Matrix<double, 3, 3, Eigen::RowMajor> A;
   A << 0.1, -0.2, 0.05, 0.3, -0.1, 0.15, -0.02, 0.4, 0.2;
   const Eigen::Matrix<double, 6, 1> change =
-      axesJacobian(imu, kMean_f) * Eigen::Map<const Eigen::Matrix<double, 9, 1>>(A.data());
+      axesJacobian(imu, kMean_f).bottomLeftCorner<6, 9>() * Eigen::Map<const Eigen::Matrix<double, 9, 1>>(A.data());
   const Preintegration corrected = withAxes(imu, {A, kMean_f});
   EXPECT_GT((corrected.deltaV() - imu.deltaV()).norm(), 0.1);
   EXPECT_TRUE(corrected.deltaV().isApprox(imu.deltaV() + change.head<3>(), 1e-12));
   EXPECT_TRUE(corrected.deltaP().isApprox(imu.deltaP() + change.tail<3>(), 1e-12));
 }
 
-TEST(AccelerometerAxes, FollowedByOthersTheyAreOne) {
+TEST(ImuAxes, FollowedByOthersTheyAreOne) {
   Eigen::Matrix3d first, second;
   first << 0.1, -0.2, 0.05, 0.3, -0.1, 0.15, -0.02, 0.4, 0.2;
   second << -0.05, 0.1, 0.02, 0.1, 0.3, -0.2, 0.2, -0.1, 0.05;
@@ -56,7 +80,7 @@ TEST(AccelerometerAxes, FollowedByOthersTheyAreOne) {
   EXPECT_TRUE(both.deltaP().isApprox(withAxes(imu, {followedBy(first, second), {0, 0, 0}}).deltaP(), 1e-12));
 }
 
-TEST(AccelerometerAxes, NothingElseOfTheIntervalChanges) {
+TEST(ImuAxes, NothingElseOfTheIntervalChanges) {
   Preintegration imu = turning();
   imu.setStampNoise(0.001, 1e-4 * Preintegration::Matrix9::Identity());
   const Preintegration same = withAxes(imu, {});
