@@ -506,12 +506,16 @@ TEST_F(BatchRefinementTest, AnErrorOfTheAccelerometerThatComesAndGoesIsNoMotion)
   EXPECT_LT(error(material_), 0.6 * error(without));
 }
 
-/// An accelerometer whose samples f show the specific force f + axes f.
-void misalign(MapMaterial& material, const Eigen::Matrix3d& axes) {
+/// An IMU whose samples f and w show the specific force f + A f and the rate w + G w.
+void misalign(MapMaterial& material, const Eigen::Matrix3d& A, const Eigen::Matrix3d& G = Eigen::Matrix3d::Zero()) {
+  const Eigen::Matrix3d I = Eigen::Matrix3d::Identity();
   for (RetiredKeyframe& keyframe : material.keyframes) {
     if (!keyframe.imu) continue;
     ImuBatch samples = keyframe.imu->samples();
-    for (ImuSample& sample : samples) sample.accel = (Eigen::Matrix3d::Identity() + axes).inverse() * sample.accel;
+    for (ImuSample& sample : samples) {
+      sample.accel = (I + A).inverse() * sample.accel;
+      sample.gyro = (I + G).inverse() * sample.gyro;
+    }
     auto imu = std::make_shared<Preintegration>(keyframe.imu->bias(), keyframe.imu->noise());
     imu->append(samples);
     keyframe.imu = imu;
@@ -549,14 +553,7 @@ TEST_F(BatchRefinementTest, WrongAxesOfTheAccelerometerAreFoundAndItsSamplesCorr
 TEST_F(BatchRefinementTest, WrongAxesOfTheGyroscopeAreFound) {
   Eigen::Matrix3d G;
   G << 0.015, 0.01, 0, 0.01, -0.02, -0.01, 0, -0.01, 0.01;
-  for (RetiredKeyframe& keyframe : material_.keyframes) {
-    if (!keyframe.imu) continue;
-    ImuBatch samples = keyframe.imu->samples();
-    for (ImuSample& sample : samples) sample.gyro = (Eigen::Matrix3d::Identity() + G).inverse() * sample.gyro;
-    auto imu = std::make_shared<Preintegration>(keyframe.imu->bias(), keyframe.imu->noise());
-    imu->append(samples);
-    keyframe.imu = imu;
-  }
+  misalign(material_, Eigen::Matrix3d::Zero(), G);
   const RefinementReport report = refine(material_);
   EXPECT_TRUE(report.accepted) << report.verdict;
   EXPECT_LT((report.gyro_axes - G).norm(), 0.3 * G.norm()) << report.gyro_axes;
