@@ -1,13 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "lintel/factors/AxesImuFactor.h"
 
-#include "lintel/inertial/ImuAxes.h"
-
 namespace lintel {
 
 AxesImuFactor::AxesImuFactor(std::shared_ptr<const Preintegration> preintegration, const Eigen::Vector3d& mean_f)
     : factor_(std::move(preintegration)) {
-  by_axes_ = -factor_.sqrtInformation() * axesJacobian(factor_.preintegration(), mean_f);
+  by_axes_ = -factor_.sqrtInformation() * factor_.preintegration().axesJacobian(mean_f);
 }
 
 bool AxesImuFactor::Evaluate(double const* const* parameters, double* residuals, double** jacobians) const {

@@ -15,6 +15,21 @@ namespace {
 constexpr double kBridgedGyro = 0.15;  // [rad/s/sqrt(Hz)]
 constexpr double kBridgedAccel = 0.6;  // [m/s^2/sqrt(Hz)]
 
+/// d (R A f) / d A.
+Eigen::Matrix<double, 3, 9> byAxes(const Eigen::Matrix3d& R, const Eigen::Vector3d& f) {
+  Eigen::Matrix<double, 3, 9> J;
+  for (int row = 0; row < 3; ++row) J.middleCols<3>(3 * row) = R.col(row) * f.transpose();
+  return J;
+}
+
+/// d (G w) / d G of a symmetric G.
+Eigen::Matrix<double, 3, 6> bySymmetric(const Eigen::Vector3d& w) {
+  Eigen::Matrix<double, 3, 6> J = Eigen::Matrix<double, 3, 6>::Zero();
+  J.leftCols<3>().diagonal() = w;
+  J.rightCols<3>() << w.y(), w.z(), 0, w.x(), 0, w.z(), 0, w.x(), w.y();
+  return J;
+}
+
 }  // namespace
 
 void Preintegration::append(const ImuBatch& samples) {
@@ -34,6 +49,8 @@ void Preintegration::reset() {
   delta_v_.setZero();
   delta_p_.setZero();
   bias_jacobian_.setZero();
+  accel_axes_jacobian_.setZero();
+  gyro_axes_jacobian_.setZero();
   covariance_.setZero();
 }
 
@@ -54,7 +71,7 @@ void Preintegration::raiseNoise(const ImuNoise& least) {
 
 void Preintegration::integrate(const ImuSample& s0, const ImuSample& s1) {
   const double dt = 1e-9 * static_cast<double>(s1.t_ns - s0.t_ns), dt2 = dt * dt;
-  const Eigen::Vector3d omega = 0.5 * (s0.gyro + s1.gyro) - bias_.gyro, phi = omega * dt;
+  const Eigen::Vector3d gyro_mean = 0.5 * (s0.gyro + s1.gyro), phi = (gyro_mean - bias_.gyro) * dt;
   const Eigen::Quaterniond step = expRotation(phi);
   const Eigen::Quaterniond R1 = (delta_R_ * step).normalized();
   const Eigen::Vector3d a0 = s0.accel - bias_.accel, a1 = s1.accel - bias_.accel;
@@ -81,6 +98,10 @@ void Preintegration::integrate(const ImuSample& s0, const ImuSample& s1) {
   B.block<3, 3>(kPosition, 3) = 0.5 * Rm * dt2;
 
   bias_jacobian_ = A * bias_jacobian_ - B;  // a bias is subtracted from the measurement
+  const Eigen::Matrix<double, 3, 9> a_by_A = 0.5 * (byAxes(R0m, s0.accel) + byAxes(R1m, s1.accel));
+  accel_axes_jacobian_.bottomRows<3>() += dt * accel_axes_jacobian_.topRows<3>() + 0.5 * dt2 * a_by_A;
+  accel_axes_jacobian_.topRows<3>() += dt * a_by_A;
+  gyro_axes_jacobian_ = A * gyro_axes_jacobian_ + B.leftCols<3>() * bySymmetric(gyro_mean);
   Eigen::Matrix<double, 6, 1> variance;
   const double gyro = s1.bridged ? kBridgedGyro : noise_.gyro_noise;
   const double accel = s1.bridged ? kBridgedAccel : noise_.accel_noise;
@@ -112,6 +133,17 @@ Preintegration::Matrix9 Preintegration::correlatedCovariance() const {
   result.block<3, 3>(kPosition, kVelocity) = result.block<3, 3>(kVelocity, kPosition);
   result.block<3, 3>(kPosition, kPosition).diagonal().setConstant(variance * pp * T * T * T * T);
   return result;
+}
+
+/// What mean_f takes away is what a bias of A mean_f would.
+Preintegration::AxesJacobian Preintegration::axesJacobian(const Eigen::Vector3d& mean_f) const {
+  AxesJacobian J;
+  J.topLeftCorner<3, 9>().setZero();
+  J.bottomLeftCorner<6, 9>() = accel_axes_jacobian_;
+  for (int row = 0; row < 3; ++row)
+    J.block<6, 3>(kVelocity, 3 * row) += bias_jacobian_.block<6, 1>(kVelocity, 3 + row) * mean_f.transpose();
+  J.rightCols<6>() = gyro_axes_jacobian_;
+  return J;
 }
 
 Preintegration::Corrected Preintegration::corrected(const ImuBias& bias) const {

@@ -41,7 +41,7 @@ TEST(ImuAxes, OfASensorThatStandsStillTheyAddToWhatItMeasures) {
 /// By numeric differences.
 TEST(ImuAxes, TheJacobianByTheGyroscopesAxesIsThatOfTheDeltas) {
   const Preintegration imu = turning();
-  const AxesJacobian J = axesJacobian(imu, kMean_f);
+  const Preintegration::AxesJacobian J = imu.axesJacobian(kMean_f);
   constexpr double kStep = 1e-5;
   const std::pair<int, int> elements[] = {{0, 0}, {1, 1}, {2, 2}, {0, 1}, {0, 2}, {1, 2}};
   for (int i = 0; i < 6; ++i) {
@@ -65,7 +65,7 @@ TEST(ImuAxes, TheJacobianGivesTheDeltasOfAnyAxes) {
   Eigen::Matrix<double, 3, 3, Eigen::RowMajor> A;
   A << 0.1, -0.2, 0.05, 0.3, -0.1, 0.15, -0.02, 0.4, 0.2;
   const Eigen::Matrix<double, 6, 1> change =
-      axesJacobian(imu, kMean_f).bottomLeftCorner<6, 9>() * Eigen::Map<const Eigen::Matrix<double, 9, 1>>(A.data());
+      imu.axesJacobian(kMean_f).bottomLeftCorner<6, 9>() * Eigen::Map<const Eigen::Matrix<double, 9, 1>>(A.data());
   const Preintegration corrected = withAxes(imu, {A, kMean_f});
   EXPECT_GT((corrected.deltaV() - imu.deltaV()).norm(), 0.1);
   EXPECT_TRUE(corrected.deltaV().isApprox(imu.deltaV() + change.head<3>(), 1e-12));

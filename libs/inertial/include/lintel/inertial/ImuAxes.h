@@ -21,11 +21,6 @@ struct ImuAxes {
 /// The A of samples that are corrected by `first`, then by `second`.
 Eigen::Matrix3d followedBy(const Eigen::Matrix3d& first, const Eigen::Matrix3d& second);
 
-/// d (delta_theta, delta_v, delta_p) / d (A, G): the rows of A one after the other, then xx, yy, zz, xy, xz, yz of G;
-/// delta_theta is a right perturbation of delta_R. By A it is exact, as both are linear in it, by G to first order.
-using AxesJacobian = Eigen::Matrix<double, 9, 15>;
-AxesJacobian axesJacobian(const Preintegration& imu, const Eigen::Vector3d& mean_f);
-
 /// The samples as if the IMU had right axes.
 ImuBatch withAxes(ImuBatch samples, const ImuAxes& axes);
 

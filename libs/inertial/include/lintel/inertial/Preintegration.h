@@ -18,12 +18,14 @@ struct ImuBias {
 
 /// Relative motion between two times from IMU samples alone, independent of the state at the start [Forster2017]:
 ///   delta_R = R_bi_bj,  delta_v = R_bi_w (v_j - v_i - g dt),  delta_p = R_bi_w (p_j - p_i - v_i dt - g dt^2 / 2),
-/// by midpoint integration, with first-order bias Jacobians and the covariance of the error (theta, v, p). The bias is
-/// that of the interval's start; by how much correlated noise (ImuNoise) leaves it is in the covariance.
+/// by midpoint integration, with first-order Jacobians by biases and axes (ImuAxes) and the covariance of the error
+/// (theta, v, p). The bias is that of the interval's start; by how much correlated noise (ImuNoise) leaves it is in the
+/// covariance.
 class Preintegration {
  public:
   using Matrix9 = Eigen::Matrix<double, 9, 9>;
   using Matrix96 = Eigen::Matrix<double, 9, 6>;
+  using AxesJacobian = Eigen::Matrix<double, 9, 15>;
 
   /// Order of the error state of covariance and Jacobians.
   enum Order { kTheta = 0, kVelocity = 3, kPosition = 6 };
@@ -67,6 +69,11 @@ class Preintegration {
 
   /// d (theta, v, p) / d (bias_gyro, bias_accel).
   const Matrix96& biasJacobian() const { return bias_jacobian_; }
+
+  /// d (theta, v, p) / d (A, G) of the axes (ImuAxes) about none: the rows of A one after the other, then xx, yy, zz,
+  /// xy, xz, yz of G. By A it is exact, as velocity and position are linear in it, by G to first order.
+  AxesJacobian axesJacobian(const Eigen::Vector3d& mean_f) const;
+
   Matrix9 covariance() const { return covariance_ + stamp_covariance_ + correlatedCovariance(); }
   double stampSigma() const { return stamp_sigma_s_; }  ///< [s]
   const Matrix9& stampCovariance() const { return stamp_covariance_; }
@@ -92,6 +99,8 @@ class Preintegration {
   Eigen::Quaterniond delta_R_ = Eigen::Quaterniond::Identity();
   Eigen::Vector3d delta_v_ = Eigen::Vector3d::Zero(), delta_p_ = Eigen::Vector3d::Zero();
   Matrix96 bias_jacobian_ = Matrix96::Zero();
+  Eigen::Matrix<double, 6, 9> accel_axes_jacobian_ = Eigen::Matrix<double, 6, 9>::Zero();  // (v, p) by A, no mean_f
+  Matrix96 gyro_axes_jacobian_ = Matrix96::Zero();                                         // (theta, v, p) by G
   Matrix9 covariance_ = Matrix9::Zero();  // by the samples
   Matrix9 stamp_covariance_ = Matrix9::Zero();
   double stamp_sigma_s_ = 0;
