@@ -94,13 +94,27 @@ ImageLine LineCamera::centred(const ImageLine& line) const {
   return camera_.wide() ? between(rayOf(line.start, line.axis), rayOf(line.end, line.axis)) : line;
 }
 
-bool LineCamera::mayBeNear(const ImageLine& line, const ImageLine& other, double distance_px) const {
-  if (!camera_.wide()) return true;
-  // the axis of the other one, which is on it, from the great circle of this one
+/// Whether a line of any axis may be nearer than `most_px` to another one: the axis of the second one, which is on it,
+/// from the great circle of the first.
+bool LineCamera::mayBeNear(const ImageLine& line, const ImageLine& other, double most_px) const {
   const Eigen::Vector3d normal = (line.start / focal_).homogeneous().cross((line.end / focal_).homogeneous());
-  const double reach = distance_px + 0.1 * other.length(),
+  const double reach = most_px + 0.1 * other.length(),
                across = focal_ * normal.dot(toLineCamera(line.axis, other.axis));
   return across * across <= reach * reach * normal.squaredNorm();
+}
+
+std::optional<LineRelation> LineCamera::relateNear(const ImageLine& line, const ImageLine& other,
+                                                   double most_px) const {
+  if (camera_.wide() && !(line.axis == other.axis)) {
+    if (!mayBeNear(line, other, most_px)) return std::nullopt;
+    return relateNear(line, seenFrom(line.axis, other), most_px);
+  }
+  const Eigen::Vector2d along = line.end - line.start, from = other.start - line.start;
+  const double across = along.x() * from.y() - along.y() * from.x();
+  if (across * across > most_px * most_px * along.squaredNorm()) return std::nullopt;
+  const LineRelation relation = relate(line, other);
+  if (relation.distance_px > most_px) return std::nullopt;
+  return relation;
 }
 
 std::optional<Eigen::Vector2d> LineCamera::seenAt(const Eigen::Vector2d& u, const Eigen::Vector3d& axis) const {

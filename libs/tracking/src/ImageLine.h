@@ -30,6 +30,14 @@ struct ImageLine {
   Eigen::Vector2d at(double share) const { return start + share * (end - start); }
 };
 
+/// How two segments lie to each other.
+struct LineRelation {
+  double angle_rad;    ///< between the directions, signed ends count: in [0, pi]
+  double distance_px;  ///< larger distance of the second one's ends from the first one's infinite line
+  double overlap_px;   ///< of the projections on the first line; negative: the gap between them
+};
+LineRelation relate(const ImageLine& line, const ImageLine& other);
+
 /// Conversions between undistorted pixels and the image.
 class LineCamera {
  public:
@@ -73,12 +81,14 @@ class LineCamera {
   ImageLine seenFrom(const Eigen::Vector3d& axis, const ImageLine& line) const;
   /// The same line with the axis of its middle.
   ImageLine centred(const ImageLine& line) const;
-  /// Whether lines with different axes may be nearer than `distance_px` to each other; quick.
-  bool mayBeNear(const ImageLine& line, const ImageLine& other, double distance_px) const;
+  /// relate() with lines of any axes, in the plane of the first one's; quick where the second one is farther than
+  /// `most_px` from the first, and empty there.
+  std::optional<LineRelation> relateNear(const ImageLine& line, const ImageLine& other, double most_px) const;
   /// Rotation from the frame of a line's own camera to the real one's.
   static Eigen::Matrix3d R_c_a(const Eigen::Vector3d& axis);
 
  private:
+  bool mayBeNear(const ImageLine& line, const ImageLine& other, double most_px) const;
   Eigen::Vector2d ofRay(const Eigen::Vector3d& ray, const Eigen::Vector3d& axis) const;
   ImageLine between(const Eigen::Vector3d& start_ray, const Eigen::Vector3d& end_ray) const;
 
@@ -89,14 +99,6 @@ class LineCamera {
   double max_radius_ = 0;    ///< of undistorted pixels in the image, with a little room
   double least_cosine_ = 0;  ///< of the angle to the optical axis, of what a wide image shows
 };
-
-/// How two segments lie to each other.
-struct LineRelation {
-  double angle_rad;    ///< between the directions, signed ends count: in [0, pi]
-  double distance_px;  ///< larger distance of the second one's ends from the first one's infinite line
-  double overlap_px;   ///< of the projections on the first line; negative: the gap between them
-};
-LineRelation relate(const ImageLine& line, const ImageLine& other);
 
 /// A line fitted to points some of which are wrong.
 struct RobustLine {

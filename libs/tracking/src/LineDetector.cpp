@@ -25,12 +25,9 @@ constexpr double kLsdAngle_deg = 22.5;  ///< of gradients of one segment [Gioi20
 
 /// Joins `other` to `line` when both are pieces of one edge.
 bool join(const LineCamera& camera, ImageLine& line, const ImageLine& elsewhere, double gap_px) {
-  if (!camera.mayBeNear(line, elsewhere, kJoinDistance_px)) return false;
+  const auto relation = camera.relateNear(line, elsewhere, kJoinDistance_px);
+  if (!relation || relation->angle_rad > kJoinAngle_rad || relation->overlap_px < -gap_px) return false;
   const ImageLine other = camera.seenFrom(line.axis, elsewhere);
-  if (std::abs(line.normal().dot(other.start - line.start)) > kJoinDistance_px) return false;  // most, quickly
-  const LineRelation relation = relate(line, other);
-  if (relation.angle_rad > kJoinAngle_rad || relation.distance_px > kJoinDistance_px || relation.overlap_px < -gap_px)
-    return false;
   const Eigen::Vector2d d = line.direction();
   if (d.dot(other.start - line.start) < 0) line.start = other.start;
   if (d.dot(other.end - line.end) > 0) line.end = other.end;

@@ -64,9 +64,9 @@ std::vector<std::optional<std::size_t>> LineMatcher::match(const std::vector<Ima
   std::vector<Match> pairs;
   for (std::size_t f = 0; f < expected.size(); ++f)
     for (std::size_t t = 0; t < to.size(); ++t) {
-      const LineRelation relation = relate(expected[f], camera_.seenFrom(expected[f].axis, to[t]));
-      if (relation.angle_rad > kGateAngle_rad || relation.distance_px > camera_.scaled(kGateDistance_px) ||
-          relation.overlap_px < kMinOverlap * std::min(expected[f].length(), to[t].length()))
+      const auto relation = camera_.relateNear(expected[f], to[t], camera_.scaled(kGateDistance_px));
+      if (!relation || relation->angle_rad > kGateAngle_rad ||
+          relation->overlap_px < kMinOverlap * std::min(expected[f].length(), to[t].length()))
         continue;
       const int bits = distance(from_descriptors.row(static_cast<int>(f)), to_descriptors.row(static_cast<int>(t)));
       if (bits <= params_.descriptor_distance) pairs.push_back({f, t, bits});

@@ -32,25 +32,18 @@ ImageLine united(const ImageLine& a, const ImageLine& b) {
 }  // namespace
 
 double LineMerger::score(const ImageLine& predicted, const ImageLine& detected) const {
-  if (!camera_.mayBeNear(predicted, detected, params_.merge_distance_px)) return 0;
-  return scoreSeen(predicted, camera_.seenFrom(predicted.axis, detected));
-}
-
-double LineMerger::scoreSeen(const ImageLine& predicted, const ImageLine& detected) const {
   // A short line's direction is uncertain: distances are measured from the longer one.
   const bool longer = predicted.length() >= detected.length();
   const ImageLine &reference = longer ? predicted : detected, &other = longer ? detected : predicted;
-  if (std::abs(reference.normal().dot(other.start - reference.start)) > params_.merge_distance_px)
-    return 0;  // most, quickly
-  const LineRelation relation = relate(reference, other);
-  const double shorter = std::min(predicted.length(), detected.length());
-  if (relation.angle_rad > params_.merge_angle_rad || relation.distance_px > params_.merge_distance_px ||
-      relation.overlap_px < -camera_.scaled(kGap_px) || shorter <= 0)
+  const auto relation = camera_.relateNear(reference, other, params_.merge_distance_px);
+  const double shorter = other.length();
+  if (!relation || relation->angle_rad > params_.merge_angle_rad || relation->overlap_px < -camera_.scaled(kGap_px) ||
+      shorter <= 0)
     return 0;
   // A piece that continues the line counts, but less than one beside it.
-  const double overlap = 0.2 + 0.8 * std::clamp(relation.overlap_px / shorter, 0.0, 1.0);
-  return overlap * (1.0 - 0.7 * relation.angle_rad / params_.merge_angle_rad) *
-         (1.0 - 0.7 * relation.distance_px / params_.merge_distance_px);
+  const double overlap = 0.2 + 0.8 * std::clamp(relation->overlap_px / shorter, 0.0, 1.0);
+  return overlap * (1.0 - 0.7 * relation->angle_rad / params_.merge_angle_rad) *
+         (1.0 - 0.7 * relation->distance_px / params_.merge_distance_px);
 }
 
 MergedLines LineMerger::merge(const std::vector<ImageLine>& predicted, const std::vector<ImageLine>& detected) const {
@@ -74,16 +67,12 @@ MergedLines LineMerger::merge(const std::vector<ImageLine>& predicted, const std
   return merged;
 }
 
-bool LineMerger::duplicates(const ImageLine& a, const ImageLine& other) const {
-  if (!camera_.mayBeNear(a, other, kDuplicateDistance_px)) return false;
-  const ImageLine b = camera_.seenFrom(a.axis, other);
+bool LineMerger::duplicates(const ImageLine& a, const ImageLine& b) const {
   const bool a_longer = a.length() >= b.length();
   const ImageLine &longer = a_longer ? a : b, &shorter = a_longer ? b : a;
-  if (std::abs(longer.normal().dot(shorter.start - longer.start)) > kDuplicateDistance_px)
-    return false;  // most, quickly
-  const LineRelation relation = relate(longer, shorter);
-  return relation.angle_rad < params_.merge_angle_rad && relation.distance_px < kDuplicateDistance_px &&
-         relation.overlap_px > kDuplicateOverlap * shorter.length();
+  const auto relation = camera_.relateNear(longer, shorter, kDuplicateDistance_px);
+  return relation && relation->angle_rad < params_.merge_angle_rad &&
+         relation->overlap_px > kDuplicateOverlap * shorter.length();
 }
 
 }  // namespace lintel

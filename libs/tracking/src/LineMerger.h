@@ -31,8 +31,6 @@ class LineMerger {
   bool duplicates(const ImageLine& a, const ImageLine& b) const;
 
  private:
-  double scoreSeen(const ImageLine& predicted, const ImageLine& detected) const;
-
   const LineCamera& camera_;
   LineTrackerParams params_;
 };

@@ -18,10 +18,9 @@ constexpr double kBetweenPlaces_px = 16;  ///< between places along a line
 bool isAmong(const LineCamera& camera, const ImageLine& line, const std::vector<ImageLine>& detected,
              double distance_px) {
   return std::any_of(detected.begin(), detected.end(), [&](const ImageLine& other) {
-    if (!camera.mayBeNear(line, other, distance_px)) return false;
-    const LineRelation relation = relate(line, camera.seenFrom(line.axis, other));
-    return relation.angle_rad < kMostAngle_rad && relation.distance_px < distance_px &&
-           relation.overlap_px > kLeastOverlap * std::min(line.length(), other.length());
+    const auto relation = camera.relateNear(line, other, distance_px);
+    return relation && relation->angle_rad < kMostAngle_rad &&
+           relation->overlap_px > kLeastOverlap * std::min(line.length(), other.length());
   });
 }
 
