@@ -101,7 +101,7 @@ class Preintegration {
   Matrix96 bias_jacobian_ = Matrix96::Zero();
   Eigen::Matrix<double, 6, 9> accel_axes_jacobian_ = Eigen::Matrix<double, 6, 9>::Zero();  // (v, p) by A, no mean_f
   Matrix96 gyro_axes_jacobian_ = Matrix96::Zero();                                         // (theta, v, p) by G
-  Matrix9 covariance_ = Matrix9::Zero();  // by the samples
+  Matrix9 covariance_ = Matrix9::Zero();                                                   // by the samples
   Matrix9 stamp_covariance_ = Matrix9::Zero();
   double stamp_sigma_s_ = 0;
 };
