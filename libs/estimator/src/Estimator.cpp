@@ -71,16 +71,14 @@ class Estimator::Impl {
                                  window_.correction[kTimeOffsetAt],
                                  window_.readout_s(),
                                  stampJitter_s(),
-                                 axes(),
-                                 window_.imuAxes().G,
+                                 followedBy(rig_.axes.A, window_.imuAxes().A),
+                                 followedBy(rig_.axes.G, window_.imuAxes().G),
                                  {}};
     if (tracking_) estimate.sigma = windowSigma(window_, params_, rig_.T_b_c).calibration;
     return estimate;
   }
 
  private:
-  /// As they should be given.
-  Eigen::Matrix3d axes() const { return followedBy(rig_.accelerometer_axes, window_.imuAxes().A); }
   bool entersWindow(const FrameTracks& tracks);
   bool appendImu(const FrameTracks& tracks, const ImuBatch& imu);
   WindowUpdate skipFrame(const FrameTracks& tracks);

@@ -367,8 +367,8 @@ void BatchRefinement::complete(const std::vector<PointRecord>& held_out, MapMate
             [](const PointRecord& a, const PointRecord& b) { return a.id < b.id; });
   prepareMaterial(map_, material);
   material.camera_errors = errorsOf(material);
-  report.axes = followedBy(calibrated_.accelerometer_axes, material.axes.A);
-  report.gyro_axes = material.axes.G;
+  report.axes = followedBy(calibrated_.axes.A, material.axes.A);
+  report.gyro_axes = followedBy(calibrated_.axes.G, material.axes.G);
   report.verdict =
       text("refined: keyframes moved by up to %.3f m; points without part in it fit to %.2f px (before %.2f)",
            report.moved_m, report.held_out_after_px, report.held_out_before_px);

@@ -13,6 +13,20 @@ namespace {
 // leaves out, a fraction of a millisecond.
 constexpr double kShortest_s = 0.002, kLargestShare = 0.1, kSigmas = 5;
 
+std::string axesRemark(const std::string& sensor, const std::string& askew, const Eigen::Matrix3d& given,
+                       const Eigen::Matrix3d& found, double least) {
+  const double wrong = (found - given).cwiseAbs().maxCoeff();
+  if (!(wrong > least)) return {};
+  char text[500];
+  std::snprintf(text, sizeof text,
+                "the %s's axes are wrong by up to %.1f %% (%s, or of wrong scale); corrected on the way, better give "
+                "`%s_axes: [%.4f, %.4f, %.4f, %.4f, %.4f, %.4f, %.4f, %.4f, %.4f]` beside the IMU's noise densities: "
+                "then they are right from the start",
+                sensor.c_str(), 100 * wrong, askew.c_str(), sensor.c_str(), found(0, 0), found(0, 1), found(0, 2),
+                found(1, 0), found(1, 1), found(1, 2), found(2, 0), found(2, 1), found(2, 2));
+  return text;
+}
+
 }  // namespace
 
 std::string readoutRemark(const Rig& given, const CalibrationEstimate& estimate) {
@@ -33,31 +47,14 @@ std::string readoutRemark(const Rig& given, const CalibrationEstimate& estimate)
   return text;
 }
 
-std::string axesRemark(const Rig& given, const Eigen::Matrix3d& A) {
+std::string accelerometerAxesRemark(const AxesErrors& given, const Eigen::Matrix3d& A) {
   constexpr double kLeast = 0.02;  // four standard deviations of a direction, of a calibrated sensor's prior
-  const double wrong = (A - given.accelerometer_axes).cwiseAbs().maxCoeff();
-  if (!(wrong > kLeast)) return {};
-  char text[500];
-  std::snprintf(
-      text, sizeof text,
-      "the accelerometer's axes are wrong by up to %.1f %% (not square to each other or to the gyroscope's, or "
-      "of wrong scale); corrected on the way, better give `accelerometer_axes: [%.4f, %.4f, %.4f, "
-      "%.4f, %.4f, %.4f, %.4f, %.4f, %.4f]` beside the IMU's noise densities: then they are right from the start",
-      100 * wrong, A(0, 0), A(0, 1), A(0, 2), A(1, 0), A(1, 1), A(1, 2), A(2, 0), A(2, 1), A(2, 2));
-  return text;
+  return axesRemark("accelerometer", "not square to each other or to the gyroscope's", given.A, A, kLeast);
 }
 
-std::string gyroAxesRemark(const Eigen::Matrix3d& G) {
+std::string gyroscopeAxesRemark(const AxesErrors& given, const Eigen::Matrix3d& G) {
   constexpr double kLeast = 0.01;  // ten standard deviations of a calibrated sensor's prior
-  const double wrong = G.cwiseAbs().maxCoeff();
-  if (!(wrong > kLeast)) return {};
-  char text[200];
-  std::snprintf(
-      text, sizeof text,
-      "the gyroscope's axes are wrong by up to %.1f %% (not square to each other, or of wrong scale); corrected "
-      "on the way",
-      100 * wrong);
-  return text;
+  return axesRemark("gyroscope", "not square to each other", given.G, G, kLeast);
 }
 
 std::string stampRemark(const CalibrationEstimate& estimate) {

@@ -13,12 +13,12 @@ namespace lintel {
 /// where none is given, or a readout that is another. Empty: nothing.
 std::string readoutRemark(const Rig& given, const CalibrationEstimate& estimate);
 
-/// What it found about the accelerometer's axes, `A` as Rig::accelerometer_axes should be: that they are wrong by more
-/// than the prior explains. Empty: nothing.
-std::string axesRemark(const Rig& given, const Eigen::Matrix3d& A);
+/// What it found about the accelerometer's axes, `A` as AxesErrors should be given: that they are wrong by more than
+/// the prior explains. Empty: nothing.
+std::string accelerometerAxesRemark(const AxesErrors& given, const Eigen::Matrix3d& A);
 
-/// The same of the gyroscope's, `G` (ImuAxes).
-std::string gyroAxesRemark(const Eigen::Matrix3d& G);
+/// The same of the gyroscope's.
+std::string gyroscopeAxesRemark(const AxesErrors& given, const Eigen::Matrix3d& G);
 
 /// What it found about the images' stamps: that they are off, each by its own amount. Empty: nothing.
 std::string stampRemark(const CalibrationEstimate& estimate);

@@ -7,19 +7,21 @@
 namespace lintel {
 namespace {
 
-constexpr double kFaulty = 0.1;  ///< of the images
+constexpr double kFaulty = 0.1;   ///< of the images
+constexpr double kAllOver = 0.5;  ///< of the image: more than a vehicle shows of itself
 
 }  // namespace
 
 std::string vehicleRemark(double share) {
   if (!(share > 0)) return {};
-  char text[400];
+  char text[500];
   std::snprintf(
       text, sizeof text,
       "%.0f %% of the image move with the camera (a part of the vehicle, a hand, the rim of the lens): left out "
       "since they were found, when the camera turned to and fro; look at mask.pgm beside the trajectory, where "
-      "they are black: given as --mask it leaves them out from the first image on",
-      std::max(1.0, 100 * share));
+      "they are black: given as --mask it leaves them out from the first image on%s",
+      std::max(1.0, 100 * share),
+      share > kAllOver ? "; so much of it may be the pattern of an infrared projector: switch it off" : "");
   return text;
 }
 

@@ -161,9 +161,10 @@ OdometryResult runOdometry(Recording& recording, const Configuration& configurat
     result.remarks.push_back(readout);
   const bool refined = result.refinement.accepted;
   const CalibrationEstimate& last = result.window_calibration;
+  const AxesErrors& given = recording.rig().axes;
   for (const std::string& wrong :
-       {axesRemark(recording.rig(), refined ? result.refinement.axes : last.accelerometer_axes),
-        gyroAxesRemark(refined ? result.refinement.gyro_axes : last.gyroscope_axes)})
+       {accelerometerAxesRemark(given, refined ? result.refinement.axes : last.accelerometer_axes),
+        gyroscopeAxesRemark(given, refined ? result.refinement.gyro_axes : last.gyroscope_axes)})
     if (!wrong.empty()) result.remarks.push_back(wrong);
   if (const std::string stamps = stampRemark(result.window_calibration); !stamps.empty())
     result.remarks.push_back(stamps);

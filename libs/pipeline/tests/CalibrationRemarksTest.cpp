@@ -46,20 +46,25 @@ TEST(AxesRemark, GivesAxesThatAreWrong) {
   Eigen::Matrix3d axes = Eigen::Matrix3d::Zero();
   axes(1, 0) = 0.047;
   axes(2, 2) = -0.004;
-  const std::string text = axesRemark({}, axes);
+  const std::string text = accelerometerAxesRemark({}, axes);
   EXPECT_THAT(text, HasSubstr("wrong by up to 4.7 %"));
   EXPECT_THAT(text, HasSubstr("[0.0000, 0.0000, 0.0000, 0.0470, 0.0000, 0.0000, 0.0000, 0.0000, -0.0040]"));
-  Rig given;
-  given.accelerometer_axes(1, 0) = 0.04;
-  EXPECT_THAT(axesRemark(given, axes), IsEmpty()) << "nearly what was given";
+  AxesErrors given;
+  given.A(1, 0) = 0.04;
+  EXPECT_THAT(accelerometerAxesRemark(given, axes), IsEmpty()) << "nearly what was given";
 }
 
-TEST(GyroAxesRemark, SaysHowFarTheAxesAreOff) {
+TEST(AxesRemark, TheGyroscopesAreSaidFromOnePerCentOn) {
   Eigen::Matrix3d G = Eigen::Matrix3d::Zero();
   G(0, 2) = G(2, 0) = 0.009;
-  EXPECT_THAT(gyroAxesRemark(G), IsEmpty());
+  EXPECT_THAT(gyroscopeAxesRemark({}, G), IsEmpty());
   G(1, 1) = -0.021;
-  EXPECT_THAT(gyroAxesRemark(G), HasSubstr("wrong by up to 2.1 %"));
+  const std::string text = gyroscopeAxesRemark({}, G);
+  EXPECT_THAT(text, HasSubstr("gyroscope's axes are wrong by up to 2.1 %"));
+  EXPECT_THAT(text, HasSubstr("`gyroscope_axes: [0.0000, 0.0000, 0.0090, 0.0000, -0.0210, 0.0000, 0.0090,"));
+  AxesErrors given;
+  given.G = G;
+  EXPECT_THAT(gyroscopeAxesRemark(given, G), IsEmpty());
 }
 
 TEST(StampRemark, SaysHowFarStampsAreOff) {

@@ -7,7 +7,7 @@
 namespace lintel {
 namespace {
 
-using ::testing::AllOf, ::testing::HasSubstr, ::testing::IsEmpty;
+using ::testing::AllOf, ::testing::HasSubstr, ::testing::IsEmpty, ::testing::Not;
 
 TEST(ImagesRemark, CountsWhatWasLeftOut) {
   FrontEndStatistics tracking;
@@ -21,6 +21,8 @@ TEST(ImagesRemark, CountsWhatWasLeftOut) {
 TEST(VehicleRemark, SaysHowMuchOfTheImageAndWhereItIs) {
   EXPECT_THAT(vehicleRemark(0), IsEmpty());
   EXPECT_THAT(vehicleRemark(0.174), AllOf(HasSubstr("17 % of the image move with the camera"), HasSubstr("mask.pgm")));
+  EXPECT_THAT(vehicleRemark(0.174), Not(HasSubstr("projector")));
+  EXPECT_THAT(vehicleRemark(0.83), HasSubstr("projector"));
 }
 
 TEST(ImageFault, IsWhatATenthOfTheImagesShow) {

@@ -8,14 +8,16 @@
 
 namespace lintel {
 
-/// A stream whose accelerometer's samples are corrected for what its axes are wrong by (Rig).
+/// A stream whose IMU samples are corrected for what its axes are wrong by (Rig).
 class AxesStream final : public StreamFilter {
  public:
   explicit AxesStream(std::unique_ptr<SensorStream> stream) : StreamFilter(std::move(stream)) {}
 
   std::optional<ImuSample> nextImu(std::int64_t needed_ns, const WarningSink& warn) override {
     std::optional<ImuSample> sample = source().nextImu(needed_ns, warn);
-    if (sample) sample->accel += rig().accelerometer_axes * sample->accel;
+    if (!sample) return sample;
+    sample->accel += rig().axes.A * sample->accel;
+    sample->gyro += rig().axes.G * sample->gyro;
     return sample;
   }
 };

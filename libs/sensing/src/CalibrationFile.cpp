@@ -103,7 +103,7 @@ void CalibrationReader::readImu(const YamlFile& file) {
   noise.accel_noise = file.positive("accelerometer_noise_density");
   noise.accel_walk = file.positive("accelerometer_random_walk");
   calibration_.imu_noise = noise;
-  calibration_.accelerometer_axes = accelerometerAxes(file);
+  calibration_.axes = axesErrors(file);
   for (const char* key : {"update_rate", "rate_hz"})
     if (file.has(key)) calibration_.imu_rate_hz = file.positive(key);
   calibration_.imu_topic = file.get<std::string>("rostopic", calibration_.imu_topic);

@@ -77,7 +77,7 @@ CameraCalibration vinsCamera(const YamlFile& main, const std::string& number) {
 void readVinsForm(const YamlFile& file, Calibration& calibration) {
   if (calibration.form.empty()) calibration.form = "VINS";
   if (file.has("acc_n")) calibration.imu_noise = vinsNoise(file);
-  if (file.has("acc_n")) calibration.accelerometer_axes = accelerometerAxes(file);
+  if (file.has("acc_n")) calibration.axes = axesErrors(file);
   calibration.imu_topic = file.get<std::string>("imu_topic", calibration.imu_topic);
   if (file.has("projection_parameters")) addCamera(vinsCamera(file, ""), calibration);
   for (int i = 0; file.has("cam" + std::to_string(i) + "_calib"); ++i)
@@ -110,9 +110,13 @@ std::optional<double> lineDelay_s(const YamlFile& file) {
   return checkedLineDelay_s(file.finite("line_delay_s"), file.where("line_delay_s"));
 }
 
-std::optional<Eigen::Matrix3d> accelerometerAxes(const YamlFile& file) {
-  if (!file.has("accelerometer_axes")) return std::nullopt;
-  return checkedAxes(file.numbers("accelerometer_axes"), file.where("accelerometer_axes"));
+std::optional<AxesErrors> axesErrors(const YamlFile& file) {
+  const auto given = [&](const std::string& key) -> Eigen::Matrix3d {
+    if (!file.has(key)) return Eigen::Matrix3d::Zero();
+    return checkedAxes(file.numbers(key), file.where(key));
+  };
+  if (!file.has("accelerometer_axes") && !file.has("gyroscope_axes")) return std::nullopt;
+  return AxesErrors{given("accelerometer_axes"), given("gyroscope_axes")};
 }
 
 Eigen::Matrix3d checkedAxes(const std::vector<double>& values, const std::string& where) {
@@ -124,11 +128,16 @@ Eigen::Matrix3d checkedAxes(const std::vector<double>& values, const std::string
   return Eigen::Map<const Eigen::Matrix<double, 3, 3, Eigen::RowMajor>>(values.data());
 }
 
-std::string axesText(const Eigen::Matrix3d& axes) {
-  std::string text;
-  for (int row = 0; row < 3; ++row)
-    for (int column = 0; column < 3; ++column) text += (text.empty() ? "[" : ", ") + exactText(axes(row, column));
-  return text + "]";
+std::string axesLines(const AxesErrors& axes, const std::string& indentation) {
+  const auto line = [&](const char* key, const Eigen::Matrix3d& errors) {
+    if (errors.isZero(0)) return std::string();
+    std::string values;
+    for (int row = 0; row < 3; ++row)
+      for (int column = 0; column < 3; ++column)
+        values += (values.empty() ? "[" : ", ") + exactText(errors(row, column));
+    return indentation + key + ": " + values + "]\n";
+  };
+  return line("accelerometer_axes", axes.A) + line("gyroscope_axes", axes.G);
 }
 
 double checkedLineDelay_s(double line_delay_s, const std::string& where) {

@@ -30,11 +30,11 @@ std::optional<double> lineDelay_s(const YamlFile& file);
 /// Throws RecordingError naming `where` unless it is one that a sensor may have.
 double checkedLineDelay_s(double line_delay_s, const std::string& where);
 
-/// `accelerometer_axes` of an IMU (Rig.h), if given.
-std::optional<Eigen::Matrix3d> accelerometerAxes(const YamlFile& file);
+/// `accelerometer_axes` and `gyroscope_axes` of an IMU, A and G of AxesErrors, if one of them is given.
+std::optional<AxesErrors> axesErrors(const YamlFile& file);
 /// Of nine numbers, row by row.
 Eigen::Matrix3d checkedAxes(const std::vector<double>& values, const std::string& where);
-/// As a list in YAML.
-std::string axesText(const Eigen::Matrix3d& axes);
+/// The same two as lines of YAML, without those that are right.
+std::string axesLines(const AxesErrors& axes, const std::string& indentation = "");
 
 }  // namespace lintel

@@ -37,11 +37,6 @@ std::string list(const std::vector<double>& values) {
   return list(Eigen::Map<const Eigen::RowVectorXd>(values.data(), static_cast<Eigen::Index>(values.size())));
 }
 
-/// Empty for right axes.
-std::string axesLine(const Rig& rig) {
-  return rig.accelerometer_axes.isZero(0) ? "" : "accelerometer_axes: " + axesText(rig.accelerometer_axes) + "\n";
-}
-
 [[noreturn]] void refuseLens(const Camera& camera, const char* form) {
   throw RecordingError(std::string(form) + " has no place for the lens model " + lensName(camera.model).name +
                        (camera.model == LensModel::kRadialTangential ? " with k3" : "") + ": choose another form");
@@ -103,7 +98,7 @@ std::string kalibrForm(const Rig& rig, double time_shift_s) {
   text += "\n  gyroscope_random_walk: " + exactText(rig.imu_noise.gyro_walk);
   text += "\n  accelerometer_noise_density: " + exactText(rig.imu_noise.accel_noise);
   text += "\n  accelerometer_random_walk: " + exactText(rig.imu_noise.accel_walk) + "\n";
-  return rig.accelerometer_axes.isZero(0) ? text : text + "  " + axesLine(rig);
+  return text + axesLines(rig.axes, "  ");
 }
 
 std::string matrixOfOpenCv(const std::string& key, const Eigen::MatrixXd& matrix) {
@@ -124,7 +119,7 @@ std::string vinsForm(const Rig& rig, double time_shift_s) {
   text += "acc_n: " + exactText(rig.imu_noise.accel_noise * from_density) +
           "\ngyr_n: " + exactText(rig.imu_noise.gyro_noise * from_density) +
           "\nacc_w: " + exactText(rig.imu_noise.accel_walk) + "\ngyr_w: " + exactText(rig.imu_noise.gyro_walk) + "\n" +
-          axesLine(rig);
+          axesLines(rig.axes);
   return text + "td: " + exactText(time_shift_s) + "\n";
 }
 

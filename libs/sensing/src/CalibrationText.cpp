@@ -76,6 +76,13 @@ std::string lensInWords(const Camera& camera) {
   return text;
 }
 
+/// Nothing of right ones.
+std::string axesInWords(const Eigen::Matrix3d& errors) {
+  if (errors.isZero(0)) return {};
+  return "    its axes are wrong by up to " + rounded(100 * errors.cwiseAbs().maxCoeff(), 2) +
+         " %, which its samples are corrected for\n";
+}
+
 }  // namespace
 
 std::vector<std::string> rigDoubts(const Rig& rig, double time_shift_s) {
@@ -117,11 +124,9 @@ std::string rigInWords(const Rig& rig, double time_shift_s) {
        << "IMU: " << rounded(rig.imu_rate_hz, 4) << " samples a second\n"
        << "  gyroscope: noise " << rounded(rig.imu_noise.gyro_noise, 4) << " rad/s/sqrt(Hz), random walk "
        << rounded(rig.imu_noise.gyro_walk, 4) << " rad/s^2/sqrt(Hz)\n"
-       << "  accelerometer: noise " << rounded(rig.imu_noise.accel_noise, 4) << " m/s^2/sqrt(Hz), random walk "
-       << rounded(rig.imu_noise.accel_walk, 4) << " m/s^3/sqrt(Hz)\n";
-  if (!rig.accelerometer_axes.isZero(0))
-    text << "  its axes are wrong by up to " << rounded(100 * rig.accelerometer_axes.cwiseAbs().maxCoeff(), 2)
-         << " %, which its samples are corrected for\n";
+       << axesInWords(rig.axes.G) << "  accelerometer: noise " << rounded(rig.imu_noise.accel_noise, 4)
+       << " m/s^2/sqrt(Hz), random walk " << rounded(rig.imu_noise.accel_walk, 4) << " m/s^3/sqrt(Hz)\n"
+       << axesInWords(rig.axes.A);
   return text.str();
 }
 

@@ -125,7 +125,7 @@ void Conversion::openFolder() {
   const std::string imu_folder = mav0_ + "/imu0", truth = mav0_ + "/state_groundtruth_estimate0/data.csv";
   const EurocImu imu = loadEurocImu(imu_folder + "/sensor.yaml");
   note_.imu_noise = imu.noise;
-  note_.accelerometer_axes = imu.accelerometer_axes;
+  note_.axes = imu.axes;
   note_.imu_rate_hz = imu.rate_hz;
   if (fs::exists(truth)) lanes_.push_back({makeGroundtruthSource(truth), &summary_.groundtruth_poses, false});
   lanes_.push_back({makeImuSource(imu_folder, "imu0", imu), &summary_.imu_samples, false});

@@ -42,7 +42,7 @@ EurocImu loadEurocImu(const std::string& path) {
   imu.noise.gyro_walk = file.positive("gyroscope_random_walk");
   imu.noise.accel_noise = file.positive("accelerometer_noise_density");
   imu.noise.accel_walk = file.positive("accelerometer_random_walk");
-  imu.accelerometer_axes = accelerometerAxes(file).value_or(Eigen::Matrix3d::Zero());
+  imu.axes = axesErrors(file).value_or(AxesErrors());
   return imu;
 }
 
@@ -53,7 +53,7 @@ Rig rigOf(const EurocCamera& camera, const EurocImu& imu) {
   rig.camera_rate_hz = camera.rate_hz;
   rig.line_delay_s = camera.line_delay_s;
   rig.imu_noise = imu.noise;
-  rig.accelerometer_axes = imu.accelerometer_axes;
+  rig.axes = imu.axes;
   rig.imu_rate_hz = imu.rate_hz;
   return rig;
 }

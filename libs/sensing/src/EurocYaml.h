@@ -18,7 +18,7 @@ struct EurocCamera {
 /// imu0/sensor.yaml.
 struct EurocImu {
   ImuNoise noise;
-  Eigen::Matrix3d accelerometer_axes = Eigen::Matrix3d::Zero();  ///< as in Rig
+  AxesErrors axes;
   Pose T_v_b;  ///< T_BS: IMU in the vehicle's frame (identity in EuRoC), canonical
   double rate_hz = 0;
 };

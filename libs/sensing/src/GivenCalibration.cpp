@@ -48,7 +48,7 @@ Rig GivenCalibration::rig(const std::function<Rig()>& own, std::vector<Warning>&
     warnings.push_back({Fault::Calibration,
                         "neither the calibration nor the recording has the IMU's noise densities: those of an "
                         "ADIS16448 are assumed; add Kalibr's imu.yaml by another --calibration"});
-  if (calibration_.accelerometer_axes) rig.accelerometer_axes = *calibration_.accelerometer_axes;
+  if (calibration_.axes) rig.axes = *calibration_.axes;
   if (calibration_.imu_rate_hz) rig.imu_rate_hz = *calibration_.imu_rate_hz;
   for (std::string& doubt : rigDoubts(rig, -1e-9 * static_cast<double>(shift_ns_)))
     warnings.push_back({Fault::Calibration, "calibration: " + std::move(doubt)});

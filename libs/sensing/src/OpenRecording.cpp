@@ -58,7 +58,7 @@ std::unique_ptr<SensorStream> openStream(const std::string& path, const Recordin
   const GivenCalibration given(params);
   std::unique_ptr<SensorStream> stream = std::make_unique<ArrivalStream>(openUnshifted(path, params, given));
   stream = std::make_unique<ImuValuesStream>(std::move(stream));
-  if (!stream->rig().accelerometer_axes.isZero(0)) stream = std::make_unique<AxesStream>(std::move(stream));
+  if (!stream->rig().axes.none()) stream = std::make_unique<AxesStream>(std::move(stream));
   if (given.shift_ns() == 0) return stream;
   return std::make_unique<ShiftedStream>(std::move(stream), given.shift_ns());
 }

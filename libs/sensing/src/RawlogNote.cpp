@@ -29,8 +29,12 @@ RawlogNote fromYaml(const YAML::Node& root, const std::string& where) {
   note.imu_noise.gyro_walk = positive(imu, "gyroscope_random_walk", where);
   note.imu_noise.accel_noise = positive(imu, "accelerometer_noise_density", where);
   note.imu_noise.accel_walk = positive(imu, "accelerometer_random_walk", where);
-  if (const YAML::Node axes = imu["accelerometer_axes"])
-    note.accelerometer_axes = checkedAxes(axes.as<std::vector<double>>(), where + ": accelerometer_axes of the note");
+  const auto readAxes = [&](const std::string& key, Eigen::Matrix3d& axes) {
+    if (const YAML::Node values = imu[key])
+      axes = checkedAxes(values.as<std::vector<double>>(), where + ": " + key + " of the note");
+  };
+  readAxes("accelerometer_axes", note.axes.A);
+  readAxes("gyroscope_axes", note.axes.G);
   for (const auto& camera : root["cameras"]) {
     const auto label = camera.first.as<std::string>();
     note.camera_rates_hz[label] = positive(camera.second, "rate_hz", where);
@@ -54,8 +58,7 @@ std::string formatNote(const RawlogNote& note) {
   text += "\n  gyroscope_random_walk: " + exactText(note.imu_noise.gyro_walk) + "  # rad/s^2/sqrt(Hz)";
   text += "\n  accelerometer_noise_density: " + exactText(note.imu_noise.accel_noise) + "  # m/s^2/sqrt(Hz)";
   text += "\n  accelerometer_random_walk: " + exactText(note.imu_noise.accel_walk) + "  # m/s^3/sqrt(Hz)\n";
-  if (!note.accelerometer_axes.isZero(0)) text += "  accelerometer_axes: " + axesText(note.accelerometer_axes) + "\n";
-  text += "cameras:\n";
+  text += axesLines(note.axes, "  ") + "cameras:\n";
   for (const auto& [label, rate_hz] : note.camera_rates_hz)
     text += "  " + label + ": {rate_hz: " + exactText(rate_hz) + lineDelayText(note, label) + "}\n";
   return text;

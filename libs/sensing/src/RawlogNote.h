@@ -16,7 +16,7 @@ struct RawlogNote {
   std::map<std::string, double> camera_rates_hz;  ///< by sensor label
   std::map<std::string, double> line_delays_s;    ///< of those with a rolling shutter
   ImuNoise imu_noise;
-  Eigen::Matrix3d accelerometer_axes = Eigen::Matrix3d::Zero();  ///< as in Rig
+  AxesErrors axes;
   double imu_rate_hz = 0;
 };
 

@@ -134,7 +134,7 @@ Rig recordedRig(const Beginning& seen, const std::string& path, std::vector<Warn
   imu.rate_hz = samples.rate_hz() > 0 ? samples.rate_hz() : Rig().imu_rate_hz;
   if (seen.note) {
     imu.noise = seen.note->imu_noise;
-    imu.accelerometer_axes = seen.note->accelerometer_axes;
+    imu.axes = seen.note->axes;
     imu.rate_hz = seen.note->imu_rate_hz;
     const auto rate = seen.note->camera_rates_hz.find(camera_label);
     if (rate != seen.note->camera_rates_hz.end()) camera.rate_hz = rate->second;

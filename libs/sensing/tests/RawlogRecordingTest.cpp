@@ -103,9 +103,10 @@ TEST_F(RawlogRecordingTest, AnImuPoseOtherThanIdentityGivesTheSame) {
   expectSameAsFolder();
 }
 
-TEST_F(RawlogRecordingTest, AxesOfTheAccelerometerGiveTheSame) {
-  replaceInFile(root_ + "/mav0/imu0/sensor.yaml",
-                "rate_hz:", "accelerometer_axes: [0.01, 0.02, 0, -0.05, 0, 0.03, 0, 0.007, -0.02]\nrate_hz:");
+TEST_F(RawlogRecordingTest, AxesOfTheImuGiveTheSame) {
+  replaceInFile(root_ + "/mav0/imu0/sensor.yaml", "rate_hz:",
+                "accelerometer_axes: [0.01, 0.02, 0, -0.05, 0, 0.03, 0, 0.007, -0.02]\n"
+                "gyroscope_axes: [-0.01, 0.002, 0, 0.002, 0.02, 0.005, 0, 0.005, 0]\nrate_hz:");
   convert();
   expectSameAsFolder();
 }

@@ -181,7 +181,8 @@ void expectSameRig(const Rig& a, const Rig& b) {
                                n.accel_walk};
   };
   EXPECT_EQ(numbers(a), numbers(b));
-  EXPECT_EQ(a.accelerometer_axes, b.accelerometer_axes);
+  EXPECT_EQ(a.axes.A, b.axes.A);
+  EXPECT_EQ(a.axes.G, b.axes.G);
 }
 
 }  // namespace lintel::test

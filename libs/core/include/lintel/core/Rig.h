@@ -24,6 +24,14 @@ struct ImuNoise {
 /// The correlation time of ImuNoise::accel_correlated [s].
 constexpr double kAccelCorrelation_s = 1;
 
+/// What the axes of an IMU are wrong by, 0 where they are right: where f and w are measured, the specific force is
+/// f + A f and the angular rate w + G w, less the biases.
+struct AxesErrors {
+  Eigen::Matrix3d A = Eigen::Matrix3d::Zero(), G = Eigen::Matrix3d::Zero();
+
+  bool none() const { return A.isZero(0) && G.isZero(0); }
+};
+
 /// Calibration of the sensors that Lintel uses: one camera and one IMU. The body frame is the IMU's.
 struct Rig {
   Camera camera;
@@ -31,9 +39,7 @@ struct Rig {
   double camera_rate_hz = 20;
   double line_delay_s = 0;  ///< rolling shutter: from row to row; a frame's time is that of the middle row
   ImuNoise imu_noise;
-  /// What the accelerometer's axes are wrong by, a matrix A: where f is measured the specific force is f + A f, less
-  /// the bias. Recordings hand on corrected samples.
-  Eigen::Matrix3d accelerometer_axes = Eigen::Matrix3d::Zero();
+  AxesErrors axes;  ///< recordings hand on samples that are corrected for them
   double imu_rate_hz = 200;
   double gravity_m_s2 = kGravity;         ///< where the recording was made
   std::shared_ptr<const GrayImage> mask;  ///< of the camera's size, black where images are not used; null: nowhere

@@ -31,8 +31,8 @@ struct CalibrationEstimate {
   double time_offset_s = 0;   ///< an image with stamp t shows the world at t + offset
   double readout_s = 0;       ///< of a rolling shutter: from an image's first row to its last
   double stamp_jitter_s = 0;  ///< standard deviation of the images' stamps; 0 where it does not matter
-  Eigen::Matrix3d accelerometer_axes = Eigen::Matrix3d::Zero();  ///< Rig::accelerometer_axes as they should be
-  Eigen::Matrix3d gyroscope_axes = Eigen::Matrix3d::Zero();      ///< ImuAxes::G
+  Eigen::Matrix3d accelerometer_axes = Eigen::Matrix3d::Zero();  ///< A of Rig::axes, as it should be
+  Eigen::Matrix3d gyroscope_axes = Eigen::Matrix3d::Zero();      ///< G of Rig::axes, as it should be
   std::optional<CalibrationSigma> sigma;                         ///< of the last window; empty while there is none
 };
 

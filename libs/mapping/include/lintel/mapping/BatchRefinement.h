@@ -89,8 +89,8 @@ struct RefinementReport {
   double imu_before = 0, imu_after = 0;            ///< RMS, standard deviations
   double moved_m = 0, turned_rad = 0;              ///< most, of a keyframe, beside what all of its world have in common
   double least_offset_s = 0, most_offset_s = 0;    ///< of the keyframes, between the clocks, beside their mean
-  Eigen::Matrix3d axes = Eigen::Matrix3d::Zero();  ///< Rig::accelerometer_axes as they should be
-  Eigen::Matrix3d gyro_axes = Eigen::Matrix3d::Zero();  ///< ImuAxes::G
+  Eigen::Matrix3d axes = Eigen::Matrix3d::Zero();  ///< A of Rig::axes, as it should be
+  Eigen::Matrix3d gyro_axes = Eigen::Matrix3d::Zero();  ///< G of Rig::axes, as it should be
   double scale_sigma = 0;  ///< relative standard deviation of the size of everything: by what the residuals leave open,
                            ///< and by the accelerometer's own scale
 };

@@ -27,7 +27,7 @@ struct Calibration {
   std::vector<CameraCalibration> cameras;
   std::string imu_topic;
   std::optional<ImuNoise> imu_noise;
-  std::optional<Eigen::Matrix3d> accelerometer_axes;  ///< as in Rig
+  std::optional<AxesErrors> axes;
   std::optional<double> imu_rate_hz;
 };
 
