@@ -34,9 +34,11 @@ void PlacementCheck::add(const SlidingWindow& window) {
   Count count;
   for (const auto& [id, track] : window.points) {
     if (track.sightings.size() < kSightings || track.sightings.back().frame != window.frames.back().id) continue;
+    ++count.points;
+    count.placed += track.triangulated;
     if ((ray(track.sightings.front()) - ray(track.sightings.back())).norm() < parallax_rad) continue;
     ++count.moving;
-    count.placed += track.triangulated;
+    count.moving_placed += track.triangulated;
   }
   counts_.push_back(count);
   if (counts_.size() > kSecond) counts_.pop_front();
@@ -53,10 +55,12 @@ bool PlacementCheck::mostHaveNone() const {
   constexpr double kLeastPlaced = 0.5;  // in good runs 0.85 and more, but for the moment of a take-off
   Count sum;
   for (const Count& count : counts_) {
-    sum.moving += count.moving;
+    sum.points += count.points;
     sum.placed += count.placed;
+    sum.moving += count.moving;
+    sum.moving_placed += count.moving_placed;
   }
-  return sum.moving >= kFew && sum.placed < kLeastPlaced * sum.moving;
+  return sum.moving >= kFew && sum.moving_placed < kLeastPlaced * sum.moving && sum.placed < kLeastPlaced * sum.points;
 }
 
 }  // namespace lintel

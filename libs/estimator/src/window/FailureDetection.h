@@ -21,15 +21,17 @@ class PlacementCheck {
   /// After a solve.
   void add(const SlidingWindow& window);
 
-  /// Most of them have had none for some window frames. (For one that is so when a vehicle takes off from rest.) A
-  /// start on trial is given up sooner.
+  /// Most of them have had none for some window frames, and neither have most of all points: where the camera hardly
+  /// moves, points of noise that slide are the only ones that do. (For one window frame that is so when a vehicle takes
+  /// off from rest.) A start on trial is given up sooner.
   bool contradicted(bool on_trial) const;
 
  private:
   bool mostHaveNone() const;
 
   struct Count {
-    int moving = 0, placed = 0;
+    int points = 0, placed = 0;
+    int moving = 0, moving_placed = 0;  // of them
   };
   std::deque<Count> counts_;  // of the last window frames
   int frames_ = 0;            // in a row after which most had none
