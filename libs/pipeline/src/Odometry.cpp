@@ -173,7 +173,7 @@ OdometryResult runOdometry(Recording& recording, const Configuration& configurat
   if (const std::string images = imagesRemark(result.statistics.front_end); !images.empty())
     result.remarks.push_back(images);
   result.evidence = check.evidence();
-  result.verdict = check.verdict(result.statistics, result.rig);
+  result.verdict = check.verdict(result.statistics, result.rig, result.refinement);
   result.contradiction = contradictionOf(result);
   return result;
 }

@@ -33,6 +33,10 @@ constexpr double kLargestImuMisfit = 25 * kExpectedMisfit;
 // (12 where a flight's samples were thinned to means), vibrations that were sampled too slowly 15.5 and more, and
 // scales that are wrong by up to a fifth.
 constexpr double kLargestAccelMisfit = 15;
+// The refinement knows the calibration from the beginning on. Where samples of a vibration were dropped, or delayed by
+// a filter, its IMU errs by 1.3 to 3.5 times its noise (RMS) and the window's misfits are 15 and more; else by 0.2
+// to 1.2, also where misfits are 40 as the calibration was wrong in what the motion showed late.
+constexpr double kSuspectAccelMisfit = 10, kLargestRefinedError = 1.25;
 // Less is enough where other axes of the accelerometer would fit gravity so much better: motion alone makes it up
 // to 1.7.
 constexpr double kSuspectImuMisfit = 2 * kExpectedMisfit, kOtherAxesFit = 2.5;
@@ -129,7 +133,8 @@ std::map<std::string, double> RunCheck::evidence() const {
   return values;
 }
 
-std::string RunCheck::symptom(const OdometryStatistics& s, const Rig& estimated) const {
+std::string RunCheck::symptom(const OdometryStatistics& s, const Rig& estimated,
+                              const RefinementReport& refinement) const {
   char text[200];
   const double after_first = static_cast<double>(s.last_frame_ns - s.first_frame_ns) * 1e-9 - s.first_start_s;
   const double all = static_cast<double>(s.last_frame_ns - s.first_frame_ns) * 1e-9;
@@ -144,16 +149,16 @@ std::string RunCheck::symptom(const OdometryStatistics& s, const Rig& estimated)
                   s.resets + 1, 100 * static_cast<double>(s.frames_with_pose) / static_cast<double>(s.frames));
     return text;
   }
-  const std::string fault = imuFault();
+  const std::string fault = imuFault(refinement);
   return fault.empty() ? calibrationFault(rig_, estimated) : fault;
 }
 
-std::string RunCheck::imuFault() const {
+std::string RunCheck::imuFault(const RefinementReport& refinement) const {
   std::vector<double> misfits = imu_misfits_;
   if (misfits.size() < kLeastMisfits) return {};
   const double misfit = upperQuantile(misfits, 0.5);
   const bool other_axes = accelerometer_.axesMisfit() > kOtherAxesFit;
-  if (misfit < (other_axes ? kSuspectImuMisfit : kLargestImuMisfit)) return accelFault();
+  if (misfit < (other_axes ? kSuspectImuMisfit : kLargestImuMisfit)) return accelFault(refinement);
   char text[200];
   std::snprintf(text, sizeof text,
                 "images and IMU contradict each other: the IMU is off by %.1f times its noise between keyframes",
@@ -161,9 +166,13 @@ std::string RunCheck::imuFault() const {
   return text;
 }
 
-std::string RunCheck::accelFault() const {
+std::string RunCheck::accelFault(const RefinementReport& refinement) const {
   std::vector<double> misfits = accel_misfits_;
-  if (upperQuantile(misfits, 0.5) < kLargestAccelMisfit) return {};
+  const double misfit = upperQuantile(misfits, 0.5);
+  const bool contradicts = refinement.accepted
+                               ? misfit >= kSuspectAccelMisfit && refinement.imu_after >= kLargestRefinedError
+                               : misfit >= kLargestAccelMisfit;
+  if (!contradicts) return {};
   return "images and accelerometer contradict each other, as where a vibration was sampled too slowly or samples were "
          "dropped: the size of everything may be wrong; record all samples, or their means";
 }
@@ -186,7 +195,8 @@ std::string RunCheck::cause(const OdometryStatistics& s) const {
          "upwards; axes, unit), the distance in T_BS, the intrinsics and the distortion";
 }
 
-std::string RunCheck::verdict(const OdometryStatistics& s, const Rig& estimated) const {
+std::string RunCheck::verdict(const OdometryStatistics& s, const Rig& estimated,
+                              const RefinementReport& refinement) const {
   // The gyroscope first: what the accelerometer shows is turned by it.
   if (const std::string fault = turns_.fault(Suspicion::kNone, clock_offset_s_); !fault.empty()) {
     const std::string images = imageFault(s.front_end);
@@ -194,7 +204,7 @@ std::string RunCheck::verdict(const OdometryStatistics& s, const Rig& estimated)
   }
   if (std::string fault = accelerometer_.sizeFault(); !fault.empty()) return fault;
   const bool no_pose = s.frames_with_pose == 0;
-  std::string fault = no_pose ? "no pose was found (" + s.last_wait + ")" : symptom(s, estimated);
+  std::string fault = no_pose ? "no pose was found (" + s.last_wait + ")" : symptom(s, estimated, refinement);
   if (fault.empty()) return sigma_.fault();
   const std::string likely = cause(s);
   if (!likely.empty()) return fault + "; " + likely;

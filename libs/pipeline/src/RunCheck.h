@@ -38,8 +38,9 @@ class RunCheck {
   std::map<std::string, double> evidence() const;
 
   /// Why the trajectory must not be trusted, with the likely cause; empty when nothing contradicts it. `estimated`: the
-  /// rig as the run has refined it.
-  std::string verdict(const OdometryStatistics& statistics, const Rig& estimated) const;
+  /// rig as the run has refined it; `refinement`: of all keyframes, if it was accepted.
+  std::string verdict(const OdometryStatistics& statistics, const Rig& estimated,
+                      const RefinementReport& refinement = {}) const;
 
   /// What of the IMU's noise densities was not believed, in words; empty when all were.
   std::string noiseRemark() const { return lintel::noiseRemark(rig_.imu_noise, noise_); }
@@ -54,10 +55,11 @@ class RunCheck {
   void watchImu(const WindowUpdate& update);
   void watchFailures(const WindowUpdate& update);
   /// Of an estimate that is wrong; empty: none.
-  std::string symptom(const OdometryStatistics& statistics, const Rig& estimated) const;
+  std::string symptom(const OdometryStatistics& statistics, const Rig& estimated,
+                      const RefinementReport& refinement) const;
   /// Where the residuals of the IMU are too large for its noise; empty: nowhere.
-  std::string imuFault() const;
-  std::string accelFault() const;
+  std::string imuFault(const RefinementReport& refinement) const;
+  std::string accelFault(const RefinementReport& refinement) const;
   std::string cause(const OdometryStatistics& s) const;  ///< what may be behind it; empty: unknown
 
   Rig rig_;

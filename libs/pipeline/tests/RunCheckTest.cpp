@@ -27,7 +27,8 @@ Rig givenRig() {
 /// `frames` at 10 Hz; the estimate gains speed steadily, the accelerometer shows `gravity`. Every frame becomes a
 /// keyframe, each second one moved by `jump_m` against what the IMU says.
 std::string verdictOf(double gravity, double acceleration, std::size_t resets = 0, double share_with_pose = 1,
-                      const Rig& estimated = givenRig(), double jump_m = 0, int frames = 100) {
+                      const Rig& estimated = givenRig(), double jump_m = 0, int frames = 100,
+                      const RefinementReport& refinement = {}) {
   RunCheck check{givenRig()};
   OdometryStatistics statistics;
   const auto image =
@@ -62,7 +63,7 @@ std::string verdictOf(double gravity, double acceleration, std::size_t resets = 
   statistics.last_frame_ns = t_ns;
   statistics.resets = resets;
   statistics.frames_with_pose = static_cast<std::size_t>(share_with_pose * frames);
-  return check.verdict(statistics, estimated);
+  return check.verdict(statistics, estimated, refinement);
 }
 
 TEST(RunCheck, AGoodRunHasNoVerdict) {
@@ -161,6 +162,20 @@ TEST(RunCheck, ImagesThatContradictTheImu) {
   EXPECT_NE(accel.find("images and accelerometer contradict each other"), std::string::npos) << accel;
   EXPECT_NE(verdictOf(9.81, 0, 0, 1, givenRig(), 0.1).find("images and IMU contradict each other"), std::string::npos);
   EXPECT_EQ(verdictOf(9.81, 0, 0, 1, givenRig(), 0.1, 30), "") << "in the first seconds nothing has settled";
+}
+
+TEST(RunCheck, ARefinementThatImagesAndImuAgreeWithExcusesTheWindow) {
+  RefinementReport refinement;
+  refinement.imu_after = 0.4;
+  const auto verdict = [&](double jump_m) { return verdictOf(9.81, 0, 0, 1, givenRig(), jump_m, 100, refinement); };
+  EXPECT_NE(verdict(2e-4), "") << "not accepted";
+  refinement.accepted = true;
+  EXPECT_EQ(verdict(2e-4), "") << "the calibration was found late";
+  refinement.imu_after = 1.5;
+  EXPECT_NE(verdict(2e-4).find("images and accelerometer contradict each other"), std::string::npos);
+  EXPECT_EQ(verdict(5e-5), "") << "the window's fit";
+  refinement.imu_after = 0.4;
+  EXPECT_NE(verdict(0.1).find("images and IMU contradict each other"), std::string::npos);
 }
 
 /// A robot without a start that drives circles, whose gyroscope has a bias of 5 degrees a second.
