@@ -131,6 +131,34 @@ TEST(LineFactor, GradientsFromFarToNearlyThroughTheCameraAndTheOrigin) {
   }
 }
 
+TEST(LineFactor, RowsOfARollingShutterHaveTheirOwnTimes) {
+  // A vertical edge 2 m away, at 2 m/s to the right: the readout is 200 ms longer than what the ends were moved by. The
+  // upper one, a quarter before the middle row, was exposed 50 ms earlier (0.1 m, 5 px at a focal length of 100 px),
+  // the lower one an eighth after it.
+  const PoseBlock identity = toBlock(Pose{});
+  CorrectionBlock correction = CorrectionBlock::Zero();
+  correction[kReadoutAt] = 0.21;
+  const LineBlock line = toBlock(toOrthonormal(lineThrough({0, -1, 2}, {0, 1, 2})));
+  LineFactor factor(lineEnd(0, -0.5, 100), lineEnd(0, 0.5, 100), {{2, 0, 0}, {0, 0, 0}}, Eigen::Vector3d::Zero(), 1,
+                    {-0.25, 0.01}, {0.125, 0.01});
+  const double* blocks[] = {identity.data(), identity.data(), correction.data(), line.data()};
+  Eigen::Vector2d r;
+  ASSERT_TRUE(factor.Evaluate(blocks, r.data(), nullptr));
+  EXPECT_NEAR(std::abs(r.x()), 5, 1e-9);
+  EXPECT_NEAR(r.x() / r.y(), -2, 1e-9);
+}
+
+TEST(LineFactor, GradientsByTheReadout) {
+  const Scene s;
+  const CorrectionBlock correction = (CorrectionBlock() << 1, -1, 0.5, 2, 0.01, -0.003, 0.02, 0.004).finished();
+  const Pose T_w_c = poseFromBlock(s.T_w_bi.data()) * poseFromBlock(s.T_b_c.data());
+  const Eigen::Vector3d p0 = T_w_c * Eigen::Vector3d(0.2, -0.4, 2), p1 = T_w_c * Eigen::Vector3d(0.8, 0.2, 2.6);
+  const LineBlock line = toBlock(toOrthonormal(movedOrigin(lineThrough(p0, p1), p0)));
+  LineFactor factor(lineEnd(0.12, -0.2, 300), lineEnd(0.3, 0.08, 290), kMotion, p0, 0.8, {-0.3, 0.02}, {0.1, 0.02});
+  expectGradients(factor, {&kPoseManifold, &kPoseManifold, nullptr, &kLineManifold},
+                  {s.T_w_bi.data(), s.T_b_c.data(), correction.data(), line.data()}, 1e-5);
+}
+
 TEST(LineFactor, DerivativesOfALineThroughTheCameraAreBounded) {
   const PoseBlock identity = toBlock(Pose{});
   const CorrectionBlock zero = CorrectionBlock::Zero();

@@ -42,25 +42,24 @@ void PlacementCheck::add(const SlidingWindow& window) {
   }
   counts_.push_back(count);
   if (counts_.size() > kSecond) counts_.pop_front();
-  frames_ = mostHaveNone() ? frames_ + 1 : 0;
+
+  constexpr int kFew = 50;              // say nothing: a moving object alone
+  constexpr double kLeastPlaced = 0.5;  // in good runs 0.85 and more, but for the moment of a take-off
+  Count sum;
+  for (const Count& c : counts_) {
+    sum.points += c.points;
+    sum.placed += c.placed;
+    sum.moving += c.moving;
+    sum.moving_placed += c.moving_placed;
+  }
+  const bool moving_have_none = sum.moving >= kFew && sum.moving_placed < kLeastPlaced * sum.moving;
+  moving_frames_ = moving_have_none ? moving_frames_ + 1 : 0;
+  frames_ = moving_have_none && sum.placed < kLeastPlaced * sum.points ? frames_ + 1 : 0;
 }
 
 bool PlacementCheck::contradicted(bool on_trial) const {
   constexpr int kOnTrial = 3;
-  return frames_ >= (on_trial ? kOnTrial : static_cast<int>(kSecond));
-}
-
-bool PlacementCheck::mostHaveNone() const {
-  constexpr int kFew = 50;              // say nothing: a moving object alone
-  constexpr double kLeastPlaced = 0.5;  // in good runs 0.85 and more, but for the moment of a take-off
-  Count sum;
-  for (const Count& count : counts_) {
-    sum.points += count.points;
-    sum.placed += count.placed;
-    sum.moving += count.moving;
-    sum.moving_placed += count.moving_placed;
-  }
-  return sum.moving >= kFew && sum.moving_placed < kLeastPlaced * sum.moving && sum.placed < kLeastPlaced * sum.points;
+  return on_trial ? moving_frames_ >= kOnTrial : frames_ >= static_cast<int>(kSecond);
 }
 
 }  // namespace lintel

@@ -23,18 +23,17 @@ class PlacementCheck {
 
   /// Most of them have had none for some window frames, and neither have most of all points: where the camera hardly
   /// moves, points of noise that slide are the only ones that do. (For one window frame that is so when a vehicle takes
-  /// off from rest.) A start on trial is given up sooner.
+  /// off from rest.) A start on trial, for which another one costs little, is given up sooner and for the former alone.
   bool contradicted(bool on_trial) const;
 
  private:
-  bool mostHaveNone() const;
-
   struct Count {
     int points = 0, placed = 0;
     int moving = 0, moving_placed = 0;  // of them
   };
   std::deque<Count> counts_;  // of the last window frames
-  int frames_ = 0;            // in a row after which most had none
+  int moving_frames_ = 0;     // in a row after which most that move had none
+  int frames_ = 0;            // the same, and most of all
 };
 
 }  // namespace lintel

@@ -144,8 +144,13 @@ void WindowFactors::addLine(const LineTrack& track, const CameraPoses& poses, co
   }
   if (track.sightings.size() < 2) return;  // one sighting says nothing about the cameras
   const double scale = window_.noise_scales.lines * params_.line_sigma_px;
+  // That a shutter rolls is for points to say: a start with a wrong scale would bend lines by a readout for long.
+  const auto rowOf = [this](const Eigen::Vector2d& seen_px) {
+    return window_.unrolled_s == 0 ? RowTime{} : window_.rowTime(seen_px);
+  };
   for (const LineSighting& s : track.sightings) {
-    line_factors_.emplace_back(s.start, s.end, motionOf(s.frame), track.origin_w, scale * s.sigma_px);
+    line_factors_.emplace_back(s.start, s.end, motionOf(s.frame), track.origin_w, scale * s.sigma_px,
+                               rowOf(s.seen_start_px), rowOf(s.seen_end_px));
     factors_.push_back({&line_factors_.back(),
                         &line_loss_,
                         {{BlockKey::kPose, s.frame},
