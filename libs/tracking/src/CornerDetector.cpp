@@ -11,11 +11,20 @@ namespace lintel {
 namespace {
 
 constexpr int kBlock_px = 8;  ///< one candidate a block of 8 x 8 pixels, a fraction of the distance between points
-constexpr double kFewCorners = 0.2;  ///< of min_quality, where corners that reach it are too few for half of the points
+constexpr float kFewCorners = 0.2f;  ///< of min_quality, where corners that reach it are too few for half of the points
+constexpr double kBlank = 0.1;       ///< of the blocks, at least, show nothing but noise where corners are so few
+constexpr float kAboveNoise = 5;     ///< times the best of those: noise alone does not reach it in any block
 
 struct Candidate {
   int x, y;
   float response;
+};
+
+/// Of the pixels of half the resolution.
+struct Candidates {
+  std::vector<Candidate> maxima;  ///< strongest first
+  float strongest = 0;
+  float noise = 0;  ///< more than what noise alone shows, where the image has few corners
 };
 
 /// Sums of a row's derivative products over three columns, stored in xx[1 .. columns - 2].
@@ -61,10 +70,10 @@ cv::Mat cornerResponse(const cv::Mat& image) {
   return response;
 }
 
-/// The strongest pixel of every block, when it is a local maximum and not much weaker than the strongest of all.
-std::vector<Candidate> blockMaxima(const cv::Mat& response, int border, float min_quality) {
-  std::vector<Candidate> candidates;
-  float strongest = 0;
+/// The strongest pixel of every block, when it is a local maximum.
+Candidates blockMaxima(const cv::Mat& response, int border) {
+  Candidates found;
+  std::vector<float> of_blocks;
   for (int y0 = border; y0 < response.rows - border; y0 += kBlock_px)
     for (int x0 = border; x0 < response.cols - border; x0 += kBlock_px) {
       Candidate best{0, 0, 0};
@@ -73,44 +82,36 @@ std::vector<Candidate> blockMaxima(const cv::Mat& response, int border, float mi
         for (int x = x0; x < std::min(x0 + kBlock_px, response.cols - border); ++x)
           if (row[x] > best.response) best = {x, y, row[x]};
       }
-      if (best.y == 0 || best.response < min_quality * strongest) continue;
-      strongest = std::max(strongest, best.response);
+      if (best.y == 0) continue;
+      of_blocks.push_back(best.response);
       bool maximum = true;
       for (int dy = -1; dy <= 1 && maximum; ++dy)
         for (int dx = -1; dx <= 1; ++dx)
           if (response.at<float>(best.y + dy, best.x + dx) > best.response) maximum = false;
-      if (maximum) candidates.push_back(best);
+      if (maximum) found.maxima.push_back(best);
     }
-  candidates.erase(
-      std::remove_if(candidates.begin(), candidates.end(),
-                     [&](const Candidate& candidate) { return candidate.response < min_quality * strongest; }),
-      candidates.end());
-  return candidates;
+  if (of_blocks.empty()) return found;
+  found.strongest = *std::max_element(of_blocks.begin(), of_blocks.end());
+  const auto blank = of_blocks.begin() + static_cast<std::ptrdiff_t>(kBlank * static_cast<double>(of_blocks.size()));
+  std::nth_element(of_blocks.begin(), blank, of_blocks.end());
+  found.noise = kAboveNoise * *blank;
+  std::sort(found.maxima.begin(), found.maxima.end(), [](const Candidate& a, const Candidate& b) {
+    return a.response != b.response ? a.response > b.response : (a.y != b.y ? a.y < b.y : a.x < b.x);
+  });
+  return found;
 }
 
 }  // namespace
-
-std::vector<cv::Point2f> CornerDetector::candidates(const ImagePyramid& pyramid, double min_quality) const {
-  // Half resolution: a quarter of the work, less noise, and KLT follows the patch, not the pixel.
-  const int level = std::min(1, pyramid.levels() - 1);
-  const int scale = 1 << level;
-  cv::Mat response = cornerResponse(pyramid.image(level));
-  mask_.blacken(response, scale);
-  const int border = params_.border_px / scale + 2;
-  std::vector<Candidate> maxima = blockMaxima(response, border, static_cast<float>(min_quality));
-  std::sort(maxima.begin(), maxima.end(), [](const Candidate& a, const Candidate& b) {
-    return a.response != b.response ? a.response > b.response : (a.y != b.y ? a.y < b.y : a.x < b.x);
-  });
-  std::vector<cv::Point2f> px;
-  px.reserve(maxima.size());
-  for (const Candidate& c : maxima) px.emplace_back(static_cast<float>(scale * c.x), static_cast<float>(scale * c.y));
-  return px;
-}
 
 std::vector<cv::Point2f> CornerDetector::detect(const ImagePyramid& pyramid, const std::vector<cv::Point2f>& taken,
                                                 int wanted) const {
   std::vector<cv::Point2f> found;
   if (wanted <= 0) return found;
+  // Half resolution: a quarter of the work, less noise, and KLT follows the patch, not the pixel.
+  const int level = std::min(1, pyramid.levels() - 1), scale = 1 << level;
+  cv::Mat response = cornerResponse(pyramid.image(level));
+  mask_.blacken(response, scale);
+  const Candidates candidates = blockMaxima(response, params_.border_px / scale + 2);
   const cv::Size size = pyramid.image().size();
   DistanceGrid occupied(size.width, size.height, params_.min_distance_px);
   // Cells of the size that gives every point one; a cell's turn comes when no candidate is left in emptier cells.
@@ -125,7 +126,10 @@ std::vector<cv::Point2f> CornerDetector::detect(const ImagePyramid& pyramid, con
     occupied.insert(p);
     ++countAt(p);
   }
-  const auto choose = [&](std::vector<cv::Point2f> left) {
+  const auto choose = [&](float least) {
+    std::vector<cv::Point2f> left;
+    for (const Candidate& c : candidates.maxima)
+      if (c.response >= least) left.emplace_back(static_cast<float>(scale * c.x), static_cast<float>(scale * c.y));
     for (int turn = 0; !left.empty(); ++turn) {
       std::vector<cv::Point2f> later;
       for (const cv::Point2f& p : left) {
@@ -142,10 +146,11 @@ std::vector<cv::Point2f> CornerDetector::detect(const ImagePyramid& pyramid, con
       left = std::move(later);
     }
   };
-  choose(candidates(pyramid, params_.min_quality));
+  const float usual = static_cast<float>(params_.min_quality) * candidates.strongest;
+  choose(usual);
   // The corners of a lamp or a sheet of paper in a dim room are much stronger than all others.
   if (2 * (taken.size() + found.size()) < static_cast<std::size_t>(params_.max_points))
-    choose(candidates(pyramid, kFewCorners * params_.min_quality));
+    choose(std::max(kFewCorners * usual, std::min(usual, candidates.noise)));
   return found;
 }
 

@@ -20,9 +20,6 @@ class CornerDetector {
   std::vector<cv::Point2f> detect(const ImagePyramid& pyramid, const std::vector<cv::Point2f>& taken, int wanted) const;
 
  private:
-  /// Local maxima of the corner response, strongest first.
-  std::vector<cv::Point2f> candidates(const ImagePyramid& pyramid, double min_quality) const;
-
   ImageMask mask_;
   PointTrackerParams params_;
 };

@@ -32,12 +32,12 @@ FrontEndParams linesAtOnce() {
   return params;
 }
 
-const Eigen::Vector3d kRate(0.25, -0.35, 0.5);
+const Eigen::Vector3d kTurnRate(0.25, -0.35, 0.5);
 
 TEST(FrontEnd, followsPointsThroughRotationWithABiasedGyro) {
   const std::vector<testing::Scene> scenes(6, testing::blobs(3));
-  const auto tracks = trackTurning(scenes, pointsOnly(), kRate, {0.05, -0.05, 0.05});
-  const Eigen::Quaterniond R_c5_c0 = expRotation(kRate * 0.25).conjugate();
+  const auto tracks = trackTurning(scenes, pointsOnly(), kTurnRate, {0.05, -0.05, 0.05});
+  const Eigen::Quaterniond R_c5_c0 = expRotation(kTurnRate * 0.25).conjugate();
   std::map<TrackId, Eigen::Vector2d> first;
   for (const PointObservation& p : tracks.front().points) first[p.id] = p.ray.head<2>();
   EXPECT_GT(first.size(), 50u);
@@ -55,7 +55,7 @@ TEST(FrontEnd, followsPointsThroughRotationWithABiasedGyro) {
 }
 
 TEST(FrontEnd, spreadsPointsAndKeepsIdsAscending) {
-  const auto tracks = trackTurning(std::vector<testing::Scene>(4, testing::blobs(5)), pointsOnly(), kRate);
+  const auto tracks = trackTurning(std::vector<testing::Scene>(4, testing::blobs(5)), pointsOnly(), kTurnRate);
   for (const FrameTracks& frame : tracks) {
     std::set<int> cells;
     for (std::size_t i = 0; i < frame.points.size(); ++i) {
@@ -72,7 +72,8 @@ TEST(FrontEnd, spreadsPointsAndKeepsIdsAscending) {
 TEST(FrontEnd, tracksGoOnAfterImagesThatShowNothing) {
   const testing::Scene texture = testing::blobs(3);
   const testing::Scene black = [](const Eigen::Vector2d&) { return 0.0; };
-  const auto tracks = trackTurning({texture, texture, texture, black, black, texture, texture}, linesAtOnce(), kRate);
+  const auto tracks =
+      trackTurning({texture, texture, texture, black, black, texture, texture}, linesAtOnce(), kTurnRate);
   EXPECT_TRUE(tracks[3].points.empty());
   EXPECT_TRUE(tracks[4].points.empty());
   std::set<TrackId> before;
@@ -85,8 +86,8 @@ TEST(FrontEnd, tracksGoOnAfterImagesThatShowNothing) {
 
 TEST(FrontEnd, followsALineAndKeepsItsEnds) {
   const Strip strip{{-0.35, -0.1}, {0.3, 0.12}, 0.03};
-  const auto tracks = trackTurning(std::vector<testing::Scene>(6, testing::strips({strip})), linesAtOnce(), kRate);
-  const Eigen::Quaterniond R_c5_c0 = expRotation(kRate * 0.25).conjugate();
+  const auto tracks = trackTurning(std::vector<testing::Scene>(6, testing::strips({strip})), linesAtOnce(), kTurnRate);
+  const Eigen::Quaterniond R_c5_c0 = expRotation(kTurnRate * 0.25).conjugate();
   ASSERT_EQ(tracks.front().lines.size(), 2u);  // both edges of the strip
   ASSERT_EQ(tracks.back().lines.size(), 2u);
   for (std::size_t i = 0; i < 2; ++i) {
@@ -235,7 +236,7 @@ TEST(FrontEnd, givesTheSameOnAnyNumberOfThreads) {
   const testing::Scene scene = [&](const Eigen::Vector2d& x) { return strip(x) > 0 ? 240.0 : 0.5 * blobs(x); };
   for (const int n : {1, 3}) {
     cv::setNumThreads(n);
-    runs.push_back(trackTurning(std::vector<testing::Scene>(4, scene), linesAtOnce(), kRate));
+    runs.push_back(trackTurning(std::vector<testing::Scene>(4, scene), linesAtOnce(), kTurnRate));
   }
   cv::setNumThreads(threads);
   for (std::size_t i = 0; i < runs[0].size(); ++i) EXPECT_TRUE(same(runs[0][i], runs[1][i])) << "frame " << i;
@@ -246,7 +247,7 @@ TEST(FrontEnd, toleratesMissingGyro) {
   const Rig rig = testing::testRig();
   FrontEnd front_end(rig, pointsOnly());
   for (int i = 0; i < 3; ++i) {
-    const Eigen::Quaterniond R_c_w = expRotation(kRate * 0.02 * i).conjugate();
+    const Eigen::Quaterniond R_c_w = expRotation(kTurnRate * 0.02 * i).conjugate();
     front_end.process(testing::renderScene(rig, testing::blobs(3), i * kStep_ns, R_c_w), {});
   }
   EXPECT_EQ(front_end.statistics().frames_without_gyro, 2);
