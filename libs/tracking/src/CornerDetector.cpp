@@ -13,7 +13,7 @@ namespace {
 constexpr int kBlock_px = 8;  ///< one candidate a block of 8 x 8 pixels, a fraction of the distance between points
 constexpr float kFewCorners = 0.2f;  ///< of min_quality, where corners that reach it are too few for half of the points
 constexpr double kBlank = 0.1;       ///< of the blocks, at least, show nothing but noise where corners are so few
-constexpr float kAboveNoise = 5;     ///< times the best of those: noise alone does not reach it in any block
+constexpr float kAboveNoise = 5;  ///< times the best of those: noise alone reaches it in one block of several hundred
 
 struct Candidate {
   int x, y;
@@ -24,7 +24,7 @@ struct Candidate {
 struct Candidates {
   std::vector<Candidate> maxima;  ///< strongest first
   float strongest = 0;
-  float noise = 0;  ///< more than what noise alone shows, where the image has few corners
+  float noise = 0;  ///< noise alone is hardly ever as strong, where the image has few corners
 };
 
 /// Sums of a row's derivative products over three columns, stored in xx[1 .. columns - 2].

