@@ -69,6 +69,10 @@ std::vector<double*> BatchProblem::blocksOfErrors(const std::vector<std::size_t>
   }
   blocks.push_back(at(axes_at_));
   tiles.push_back(kAxesSize);
+  for (std::size_t i = 0; i < carriageScales(); ++i) {
+    blocks.push_back(at(carriageScaleOf(i)));
+    tiles.push_back(kCarriageScaleSize);
+  }
   return blocks;
 }
 

@@ -82,7 +82,7 @@ void BatchProblem::addView(ImageFactor<Target>& factor, ceres::LossFunction& los
   const auto [a, b] = anchors_[keyframe];
   own_factors_.push_back(std::make_unique<CarriedView<Target>>(factor, carriages_[keyframe]));
   problem_->AddResidualBlock(own_factors_.back().get(), &loss, at(poseAt(a)), at(extrinsics_at_),
-                             at(correctionAt(keyframe)), landmark, at(poseAt(b)));
+                             at(correctionAt(keyframe)), landmark, at(poseAt(b)), at(carriageScaleAt(keyframe)));
 }
 
 /// A joined point needs few views beside those of its visits: each couples keyframes that are far apart in time.

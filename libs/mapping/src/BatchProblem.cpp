@@ -94,7 +94,8 @@ void BatchProblem::placeBlocks() {
   directions_at_ = correction_at_ + stretches() * kCorrectionSize;
   mean_biases_at_ = directions_at_ + groups_.size() * kDirectionSize;
   axes_at_ = mean_biases_at_ + meanBiases() * kMeanBiasSize;
-  keyframes_at_ = axes_at_ + kAxesSize;
+  carriage_scales_at_ = axes_at_ + kAxesSize;
+  keyframes_at_ = carriage_scales_at_ + carriageScales() * kCarriageScaleSize;
   values_.resize(keyframes_at_ + material_.keyframes.size() * (kPoseSize + kMotionSize));
 
   for (std::size_t i = 0; i < points_.size(); ++i) {
@@ -121,6 +122,7 @@ void BatchProblem::placeBlocks() {
   placeMeanBiases();
   Eigen::Map<AxesBlock>(at(axes_at_)) = toBlock(material_.axes);
   problem_->AddParameterBlock(at(axes_at_), kAxesSize);
+  placeCarriageScales();
   for (std::size_t k = 0; k < material_.keyframes.size(); ++k) {
     const RetiredKeyframe& keyframe = material_.keyframes[k];
     Eigen::Map<PoseBlock>(at(poseAt(k))) = toBlock(keyframe.T_w_b);
@@ -145,6 +147,7 @@ void BatchProblem::addPriors() {
   add(makeAxesPrior(toBlock(material_.axes), estimator_.calibration).factor, axes_at_);
   addCorrectionChanges();
   addMeanBiasWalk();
+  addCarriageScalePriors();
   for (std::size_t k = 0; k < material_.keyframes.size(); ++k) {
     const RetiredKeyframe& keyframe = material_.keyframes[k];
     if (!isAnchor(k)) continue;
@@ -172,6 +175,7 @@ BatchProblem::Summary BatchProblem::solve(int max_iterations, double least_gain,
   for (std::size_t g = 0; g < groups_.size(); ++g)
     ordering->AddElementToGroup(at(directions_at_ + g * kDirectionSize), 1);
   for (std::size_t i = 0; i < meanBiases(); ++i) ordering->AddElementToGroup(at(meanBiasOf(i)), 1);
+  for (std::size_t i = 0; i < carriageScales(); ++i) ordering->AddElementToGroup(at(carriageScaleOf(i)), 1);
   for (std::size_t k = 0; k < material_.keyframes.size(); ++k) {
     if (!isAnchor(k)) continue;
     ordering->AddElementToGroup(at(poseAt(k)), 1);

@@ -96,6 +96,8 @@ class BatchProblem {
   Eigen::Matrix3Xd wayOfAnchors() const;
 
   void findCarriages();
+  void placeCarriageScales();
+  void addCarriageScalePriors();
   void carryAlong();
   void settle();
   void settleBetween(std::size_t from, std::size_t to);
@@ -107,6 +109,9 @@ class BatchProblem {
   std::size_t meanBiases() const { return mean_biases_.empty() ? 0 : mean_biases_.back() + 1; }
   std::size_t meanBiasOf(std::size_t stretch) const { return mean_biases_at_ + stretch * kMeanBiasSize; }
   std::size_t meanBiasAt(std::size_t k) const { return meanBiasOf(mean_biases_[k]); }
+  std::size_t carriageScales() const { return runs_.empty() ? 0 : runs_.back() + 1; }
+  std::size_t carriageScaleOf(std::size_t run) const { return carriage_scales_at_ + run * kCarriageScaleSize; }
+  std::size_t carriageScaleAt(std::size_t k) const { return carriageScaleOf(runs_[k]); }
   std::size_t poseAt(std::size_t k) const { return keyframes_at_ + k * (kPoseSize + kMotionSize); }
   std::size_t motionAt(std::size_t k) const { return poseAt(k) + kPoseSize; }
 
@@ -126,6 +131,7 @@ class BatchProblem {
   MapMaterial& material_;
   const std::vector<Anchors> anchors_;
   std::vector<Carriage> carriages_;  // by place: how a keyframe hangs on its anchors; that of an anchor says nothing
+  std::vector<std::size_t> runs_;  // along which the IMU leads, by place: each has a scale of the carriages of its own
   std::size_t most_views_;
   const RefinementParams& refinement_;
   std::vector<std::size_t> points_, lines_;  // places in the material
@@ -136,7 +142,7 @@ class BatchProblem {
   std::vector<FrameMotion> motions_;           // by place
   std::vector<double> values_;
   std::size_t points_at_ = 0, lines_at_ = 0, extrinsics_at_ = 0, correction_at_ = 0, directions_at_ = 0,
-              mean_biases_at_ = 0, axes_at_ = 0, keyframes_at_ = 0;
+              mean_biases_at_ = 0, axes_at_ = 0, carriage_scales_at_ = 0, keyframes_at_ = 0;
 
   ceres::CauchyLoss point_loss_, line_loss_, calibration_loss_, structural_loss_, offset_loss_;
   std::deque<PointFactor> point_factors_;

@@ -272,11 +272,11 @@ std::size_t BatchRefinement::viewsEach(const MapMaterial& material, const Used& 
 }
 
 std::vector<CameraErrors> BatchRefinement::errorsOf(MapMaterial& material) const {
-  constexpr double kInterval_s = 0.5;  // errors of poses change slowly: those between follow from their neighbours
+  constexpr double kInterval_s = 0.25;  // errors of poses change slowly: those between follow from their neighbours
   const Used used = usedOf(material);
   BatchProblem problem(calibrated_, estimator_, material,
-                       fewAnchors(material.keyframes, params_.most_keyframes, kInterval_s), used.points, used.lines,
-                       viewsEach(material, used), {}, params_);
+                       fewAnchors(material.keyframes, (params_.most_keyframes + 1) / 2, kInterval_s), used.points,
+                       used.lines, viewsEach(material, used), {}, params_);
   return problem.drawErrors();
 }
 
@@ -328,8 +328,8 @@ bool BatchRefinement::adjustOnce(int round, const std::vector<PointJoin>& joins,
   if (round > 0 && params_.groups) groups = parallelLines(map_, material);
   returnFreeMemory();
   const bool few = material.keyframes.size() <= static_cast<std::size_t>(params_.most_keyframes);
-  const std::vector<Anchors> anchors =
-      fewAnchors(material.keyframes, last || few ? params_.most_keyframes : (params_.most_keyframes + 1) / 2);
+  const int share = (last ? 1 : 2) * (few ? 1 : 2);
+  const std::vector<Anchors> anchors = fewAnchors(material.keyframes, (params_.most_keyframes + share - 1) / share);
   BatchProblem problem(calibrated_, estimator_, material, anchors, used.points, used.lines, viewsEach(material, used),
                        groups, params_);
   if (round == 0) report.imu_before = problem.imuError();

@@ -8,6 +8,12 @@
 
 namespace lintel {
 
+namespace {
+
+constexpr double kCarriageScaleSigma = 0.1;  // the causal trajectory's scale is rarely farther off
+
+}  // namespace
+
 bool BatchProblem::isAnchor(std::size_t k) const { return anchors_[k].main == k; }
 
 double BatchProblem::anchorCount() const {
@@ -25,6 +31,23 @@ void BatchProblem::findCarriages() {
     const double share =
         isAnchor(k) ? 0 : static_cast<double>(all[k].t_ns - a.t_ns) / static_cast<double>(b.t_ns - a.t_ns);
     carriages_.emplace_back(all[k].T_w_b, a.T_w_b, b.T_w_b, share);
+    runs_.push_back(k == 0 ? 0 : runs_.back() + (all[k].imu ? 0 : 1));
+  }
+}
+
+void BatchProblem::placeCarriageScales() {
+  for (std::size_t i = 0; i < carriageScales(); ++i) {
+    *at(carriageScaleOf(i)) = 1;
+    problem_->AddParameterBlock(at(carriageScaleOf(i)), kCarriageScaleSize);
+  }
+}
+
+void BatchProblem::addCarriageScalePriors() {
+  const auto manifold = std::make_shared<VectorManifold>(kCarriageScaleSize);
+  const Eigen::VectorXd one = Eigen::VectorXd::Ones(kCarriageScaleSize);
+  for (std::size_t i = 0; i < carriageScales(); ++i) {
+    own_factors_.push_back(makeBlockPrior(manifold, one, kCarriageScaleSigma * one));
+    problem_->AddResidualBlock(own_factors_.back().get(), nullptr, at(carriageScaleOf(i)));
   }
 }
 
@@ -34,7 +57,8 @@ void BatchProblem::carryAlong() {
     if (isAnchor(k)) continue;
     const auto [a, b] = anchors_[k];
     const RetiredKeyframe &keyframe = material_.keyframes[k], &anchor = material_.keyframes[a];
-    const Pose T_w_b = carriages_[k].pose(poseFromBlock(at(poseAt(a))), poseFromBlock(at(poseAt(b))).p);
+    const Pose T_w_b =
+        carriages_[k].pose(poseFromBlock(at(poseAt(a))), poseFromBlock(at(poseAt(b))).p, *at(carriageScaleAt(k)));
     Eigen::Map<PoseBlock>(at(poseAt(k))) = toBlock(T_w_b);
     Eigen::Map<MotionBlock> motion(at(motionAt(k)));
     motion << keyframe.v_w_b - anchor.v_w_b, keyframe.bias.gyro - anchor.bias.gyro,

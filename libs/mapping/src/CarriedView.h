@@ -5,17 +5,21 @@
 
 namespace lintel {
 
+constexpr int kCarriageScaleSize = 1;
+
 /// How a pose hangs on two others, a and n, between which it lies in time: its rotation stays as it is seen from a, its
-/// position keeps its distance from the point at the share s of the way from a to n:
+/// position keeps its distance from the point at the share s of the way from a to n, times a scale e that all poses
+/// share from one start of the odometry to the next:
 ///
-///   R_w_b = R_w_a R_a_b,   p_w_b = (1 - s) p_w_a + s p_w_n + R_w_a c.
+///   R_w_b = R_w_a R_a_b,   p_w_b = (1 - s) p_w_a + s p_w_n + e R_w_a c.
 ///
-/// So it follows the scale and the velocity of the trajectory; the constants R_a_b and c are what the IMU knows well.
+/// So it follows the velocity of the trajectory, and its scale: c is by how much the way bends between a and n, with
+/// the scale that the trajectory had, and is no knowledge about that scale.
 class Carriage {
  public:
   Carriage(const Pose& T_w_b, const Pose& T_w_a, const Pose& T_w_n, double share);
 
-  Pose pose(const Pose& T_w_a, const Eigen::Vector3d& p_w_n) const;
+  Pose pose(const Pose& T_w_a, const Eigen::Vector3d& p_w_n, double scale) const;
 
   double share() const { return share_; }                        ///< s
   const Eigen::Quaterniond& rotation() const { return R_a_b_; }  ///< R_a_b
@@ -28,12 +32,12 @@ class Carriage {
 };
 
 /// A residual of an image whose body pose is carried by two others. Blocks: pose of a, extrinsics, correction, target,
-/// pose of n. With J_p and J_theta with respect to the carried pose the Jacobians are
+/// pose of n, scale e. With J_p and J_theta with respect to the carried pose the Jacobians are
 ///
-///   a: (1 - s) J_p,  J_theta R_a_b^T - J_p R_w_a [c]x;   n: s J_p, 0.
+///   a: (1 - s) J_p,  J_theta R_a_b^T - J_p R_w_a [e c]x;   n: s J_p, 0;   e: J_p R_w_a c.
 template <class Target>
-class CarriedView final
-    : public ceres::SizedCostFunction<Target::kRows, kPoseSize, kPoseSize, kCorrectionSize, Target::kSize, kPoseSize> {
+class CarriedView final : public ceres::SizedCostFunction<Target::kRows, kPoseSize, kPoseSize, kCorrectionSize,
+                                                          Target::kSize, kPoseSize, kCarriageScaleSize> {
  public:
   /// `view` and `carriage` must outlive this.
   CarriedView(const ImageFactor<Target>& view, const Carriage& carriage) : view_(view), carriage_(carriage) {}

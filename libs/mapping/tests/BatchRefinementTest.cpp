@@ -81,6 +81,14 @@ class BatchRefinementTest : public testing::Test {
     }
     return alignPositions(AlignmentKind::kYaw, estimate, truth);
   }
+  double scale(const MapMaterial& material) const {
+    std::vector<Eigen::Vector3d> estimate, truth;
+    for (const RetiredKeyframe& k : material.keyframes) {
+      estimate.push_back(k.T_w_b.p);
+      truth.push_back(flight_.frames[k.id].truth.state.T_w_b.p);
+    }
+    return alignPositions(AlignmentKind::kSim3, estimate, truth).scale;
+  }
   double error(const MapMaterial& material) const {
     const Similarity T = alignment(material);
     double sum = 0;
@@ -368,6 +376,18 @@ TEST_F(BatchRefinementTest, EndsWhereMoreEffortWouldEnd) {
   params_.max_iterations = 60;
   refine(thorough);
   EXPECT_LT(error(material_), 1.1 * error(thorough) + 1e-4) << "more effort would still have changed it";
+}
+
+/// By how much the way bends between the keyframes that are adjusted comes from the poses as they were.
+TEST_F(BatchRefinementTest, KeyframesBetweenTheAdjustedOnesDoNotHoldTheScale) {
+  constexpr double kWrongScale = 1.04;
+  for (RetiredKeyframe& k : material_.keyframes) k.T_w_b.p *= kWrongScale, k.v_w_b *= kWrongScale;
+  for (auto& [t_ns, T_w_b] : material_.trajectory) T_w_b.p *= kWrongScale;
+  params_.most_keyframes = 12;  // of 16: six are adjusted
+  params_.rounds = 1;
+  const RefinementReport report = refine(material_);
+  ASSERT_TRUE(report.accepted) << report.verdict;
+  EXPECT_NEAR(scale(material_), 1, 0.02);
 }
 
 TEST_F(BatchRefinementTest, TheSameBitsEveryTime) {

@@ -17,9 +17,9 @@ struct RefinementParams {
   bool enabled = true;
   int rounds = 3;           ///< of: estimate and merge landmarks, adjust, reject outliers
   int max_iterations = 25;  ///< of a round
-  /// Adjusted in the last round; those between are carried by them, and their views count. Where there are more, half
-  /// as many are adjusted in the other rounds. 0: all.
-  int most_keyframes = 400;
+  /// So many are all adjusted in the last round; where there are more, half as many, spread in time. In the other
+  /// rounds half of that. Those between are carried by them, and their views count. 0: all.
+  int most_keyframes = 800;
   bool lines = true;   ///< lines have residuals too; off: they follow the poses
   bool groups = true;  ///< lines of a parallel group share a direction, as far as the group is parallel
   /// Standard deviations of points and lines against the window's, which are larger than its residuals because what it
