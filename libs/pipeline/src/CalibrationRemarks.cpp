@@ -12,12 +12,20 @@ namespace {
 // Rolling shutters take 5 to 30 ms for an image. What is found with a global shutter is the sum of all that the model
 // leaves out, a fraction of a millisecond.
 constexpr double kShortest_s = 0.002, kLargestShare = 0.1, kSigmas = 5;
+constexpr double kMostOfSensors = 0.1;  // twice what the axes of a depth camera (L515) are wrong by
 
 std::string axesRemark(const std::string& sensor, const std::string& askew, const Eigen::Matrix3d& given,
                        const Eigen::Matrix3d& found, double least) {
   const double wrong = (found - given).cwiseAbs().maxCoeff();
   if (!(wrong > least)) return {};
   char text[500];
+  if (wrong > kMostOfSensors) {
+    std::snprintf(text, sizeof text,
+                  "the %s's samples fit the images only with axes that are wrong by up to %.0f %%, more than those of "
+                  "any working sensor: its bias may change fast (warming up), or what it is fixed to vibrates or bends",
+                  sensor.c_str(), 100 * wrong);
+    return text;
+  }
   std::snprintf(text, sizeof text,
                 "the %s's axes are wrong by up to %.1f %% (%s, or of wrong scale); corrected on the way, better give "
                 "`%s_axes: [%.4f, %.4f, %.4f, %.4f, %.4f, %.4f, %.4f, %.4f, %.4f]` beside the IMU's noise densities: "

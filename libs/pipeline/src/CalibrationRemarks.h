@@ -14,7 +14,7 @@ namespace lintel {
 std::string readoutRemark(const Rig& given, const CalibrationEstimate& estimate);
 
 /// What it found about the accelerometer's axes, `A` as AxesErrors should be given: that they are wrong by more than
-/// the prior explains. Empty: nothing.
+/// the prior explains, or by more than any sensor's are. Empty: nothing.
 std::string accelerometerAxesRemark(const AxesErrors& given, const Eigen::Matrix3d& A);
 
 /// The same of the gyroscope's.

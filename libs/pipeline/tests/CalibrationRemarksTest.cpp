@@ -7,7 +7,7 @@
 namespace lintel {
 namespace {
 
-using ::testing::AllOf, ::testing::HasSubstr, ::testing::IsEmpty;
+using ::testing::AllOf, ::testing::HasSubstr, ::testing::IsEmpty, ::testing::Not;
 
 Rig rigWith(double line_delay_s) {
   Rig rig;
@@ -52,6 +52,15 @@ TEST(AxesRemark, GivesAxesThatAreWrong) {
   AxesErrors given;
   given.A(1, 0) = 0.04;
   EXPECT_THAT(accelerometerAxesRemark(given, axes), IsEmpty()) << "nearly what was given";
+}
+
+TEST(AxesRemark, AxesThatNoSensorHasAreNotAdvised) {
+  Eigen::Matrix3d A = Eigen::Matrix3d::Zero();
+  A(0, 1) = -0.27;
+  const std::string text = accelerometerAxesRemark({}, A);
+  EXPECT_THAT(text, HasSubstr("27 %"));
+  EXPECT_THAT(text, HasSubstr("its bias may change fast"));
+  EXPECT_THAT(text, Not(HasSubstr("accelerometer_axes:")));
 }
 
 TEST(AxesRemark, TheGyroscopesAreSaidFromOnePerCentOn) {

@@ -47,10 +47,9 @@ constexpr double kOtherScales[] = {0.5, 0.7, 1.4, 2};
 
 /// The first rounds only have to show which points fit. The last one goes on to the minimum: along the scale, with the
 /// biases and velocities that follow it, steps may lower the cost by less than the window's tolerance and yet change
-/// the scale by tenths in all. Next to no damping: it would hold the scale where the closed form has it.
+/// the scale by tenths in all.
 SolveLimits limitsOf(bool last_round) {
   SolveLimits limits{last_round ? 50 : 20};
-  limits.first_damping = 1e-8;
   if (last_round) limits.tolerance = 1e-5;
   return limits;
 }

@@ -23,9 +23,6 @@ struct SolveLimits {
   /// Relative decrease of the cost by a step after which no other is worth it. The window's next frame goes on from
   /// here: with 1e-3 it takes a fifth more steps, and trajectories are no better.
   double tolerance = 3e-3;
-  /// Of each coordinate, relative to its information. It holds what many coordinates share, as the scale, much more
-  /// firmly than a single one: with 1e-4 a window that is nearly right changes its scale little by little.
-  double first_damping = 1e-4;
 };
 
 /// Makes constants of what is not refined of the calibration.

@@ -167,48 +167,6 @@ TEST_F(InitializerTest, ADriveThatHardlyAcceleratesStartsWithTheRightScale) {
   EXPECT_LT(relativeMotionError(window, f, 72, 160), 0.04);
 }
 
-/// A vehicle on wheels in an even turn of 6 m at about 1.8 m/s; EuRoC's body axes.
-class EvenTurn final : public Trajectory {
- public:
-  explicit EvenTurn(const Eigen::Quaterniond& R_b_c) {
-    Eigen::Matrix3d R_n_c;  // the camera looks ahead, its image is upright
-    R_n_c << 0, 0, 1, -1, 0, 0, 0, -1, 0;
-    R_n_b_ = Eigen::Quaterniond(R_n_c) * R_b_c.conjugate();
-  }
-
-  KinematicState at(double t) const override {
-    constexpr double kRadius_m = 6;
-    const double yaw = 0.3 * t + 0.05 * std::sin(0.6 * t), rate = 0.3 + 0.03 * std::cos(0.6 * t),
-                 acceleration = -0.018 * std::sin(0.6 * t);
-    const Eigen::Vector3d ahead(std::cos(yaw), std::sin(yaw), 0), left(-std::sin(yaw), std::cos(yaw), 0);
-    KinematicState s;
-    s.T_w_b.q = Eigen::AngleAxisd(yaw, Eigen::Vector3d::UnitZ()) * R_n_b_;
-    s.T_w_b.p = -kRadius_m * left;
-    s.v_w_b = kRadius_m * rate * ahead;
-    s.a_w_b = kRadius_m * (acceleration * ahead + rate * rate * left);
-    s.omega_b = R_n_b_.conjugate() * Eigen::Vector3d(0, 0, rate);
-    return s;
-  }
-
- private:
-  Eigen::Quaterniond R_n_b_;
-};
-
-/// Scale, bias and velocities change together over many steps. With the window's damping it is 17 % off, now 8 %.
-TEST_F(InitializerTest, AnEvenTurnStartsWithTheScaleThatTheResidualsShow) {
-  TrackSimulationParams tracks;
-  tracks.duration_s = 6;
-  tracks.point_noise_px = 0.3;
-  tracks.points = 700;
-  tracks.max_points_per_frame = 100;
-  const TrackedFlight f = fly(perfectImu(), tracks, EvenTurn(eurocRig().T_b_c.q));
-  SlidingWindow window = bufferOf(f, 10, 40);
-  EstimatorParams params;
-  params.initializer.max_scale_sigma = 0.5;
-  ASSERT_EQ(Initializer(params, f.rig.T_b_c).initialise(window), "");
-  EXPECT_LT(relativeMotionError(window, f, 10, 88), 0.12);
-}
-
 /// Where accelerations are small, what a camera is mounted and calibrated wrong by is taken for some of them. A buffer
 /// that had to become full shows the calibration as well, and in a short one it stays as given.
 TEST_F(InitializerTest, AGentleStartFindsTheScaleAlthoughTheCalibrationIsSlightlyWrong) {
