@@ -6,9 +6,10 @@
 #include <optional>
 
 #include "ParamsCheck.h"
-#include "StartMemory.h"
 #include "initialisation/Initializer.h"
 #include "initialisation/StartBuffer.h"
+#include "initialisation/StartMemory.h"
+#include "initialisation/StartReplacement.h"
 #include "landmarks/LineDegeneracy.h"
 #include "landmarks/LineTriangulation.h"
 #include "landmarks/ParallelGroups.h"
@@ -20,6 +21,7 @@
 #include "solver/WindowSolver.h"
 #include "window/FailureDetection.h"
 #include "window/KeyframeSelection.h"
+#include "window/LandmarkCounts.h"
 #include "window/NoiseScale.h"
 #include "window/OutlierRejection.h"
 #include "window/RestDetection.h"
@@ -86,11 +88,11 @@ class Estimator::Impl {
   void remember(const FrameTracks& tracks);
   void initialise(WindowUpdate& update);
   void shortenBuffer();
-  void replaceWrongStart(const std::vector<StateCovariance>& covariances, WindowUpdate& update);
-  void addPosesBetween(const WindowFrame& from, const WindowFrame& to, const StateCovariance& covariance,
-                       WindowUpdate& update) const;
+  void startDrift(WindowUpdate& update);
   void track(WindowUpdate& update);
   void solve(WindowUpdate& update);
+  void updateUncertainties();
+  void repropagate();
   double stampJitter_s() const { return params_.calibration.find_stamp_jitter ? stamp_jitter_.sigma_s() : 0; }
   void shrink(bool second_newest_is_keyframe, WindowUpdate& update);
   void dropOldest(WindowUpdate& update);
@@ -102,10 +104,7 @@ class Estimator::Impl {
   void clearWindow(bool keep_calibration);
   void fillFromMemory();
   void moveToAnchor();
-  void countLandmarks(WindowUpdate& update) const;
   void fillPose(WindowUpdate& update);
-  std::vector<StateCovariance> startDrift(const WindowUpdate& update);
-  std::vector<const WindowFrame*> replacingFrames(const WindowUpdate& update) const;
 
   Rig rig_;
   EstimatorParams params_;
@@ -256,8 +255,7 @@ void Estimator::Impl::initialise(WindowUpdate& update) {
   started_at_rest_ = window_.frames.back().at_rest;
   update.status = EstimatorStatus::kTracking;
   first_pose_ns_ = update.t_ns;
-  const std::vector<StateCovariance> covariances = startDrift(update);
-  if (replaces_from_ns_) replaceWrongStart(covariances, update);
+  startDrift(update);
   while (static_cast<int>(window_.frames.size()) > params_.keyframes) dropOldest(update);
   fillPose(update);
 }
@@ -269,46 +267,19 @@ void Estimator::Impl::shortenBuffer() {
   leaveOut(k, window_);
 }
 
-/// Frames of this start that the wrong one had given poses for.
-std::vector<const WindowFrame*> Estimator::Impl::replacingFrames(const WindowUpdate& update) const {
-  std::vector<const WindowFrame*> frames;
-  for (const WindowFrame& frame : window_.frames)
-    if (replaces_from_ns_ && frame.t_ns >= *replaces_from_ns_ && frame.t_ns < update.t_ns) frames.push_back(&frame);
-  return frames;
-}
-
-/// Covariances are relative to the first pose from here on. Returns those of the frames that replace others.
-std::vector<StateCovariance> Estimator::Impl::startDrift(const WindowUpdate& update) {
+/// Covariances are relative to the first pose from here on: that of the newest frame, or the first that replaces one of
+/// a wrong start.
+void Estimator::Impl::startDrift(WindowUpdate& update) {
   const WindowFrame& newest = window_.frames.back();
+  std::vector<const WindowFrame*> frames;
+  if (replaces_from_ns_) frames = framesToReplace(window_, *replaces_from_ns_);
   std::vector<StateCovariance> covariances;
-  for (const WindowFrame* frame : replacingFrames(update))
+  for (const WindowFrame* frame : frames)
     covariances.push_back(covariances.empty() ? sigma_->start(window_, frame->id) : sigma_->of(window_, *frame));
   newest_covariance_ = covariances.empty() ? sigma_->start(window_, newest.id) : sigma_->of(window_, newest);
-  return covariances;
-}
-
-void Estimator::Impl::replaceWrongStart(const std::vector<StateCovariance>& covariances, WindowUpdate& update) {
-  const auto frames = replacingFrames(update);
-  for (std::size_t i = 0; i < frames.size(); ++i) {
-    update.replaced.emplace_back(frames[i]->t_ns, frames[i]->T_w_b());
-    update.replaced_covariances.push_back(covariances[i]);
-    addPosesBetween(*frames[i], i + 1 < frames.size() ? *frames[i + 1] : window_.frames.back(), covariances[i], update);
-  }
+  replacePoses(window_, frames, covariances, memory_, update);
   if (!update.replaced.empty()) first_pose_ns_ = update.replaced.front().first;
   replaces_from_ns_.reset();
-}
-
-/// Of the frames between two window frames, as the IMU carries the first one's state to them.
-void Estimator::Impl::addPosesBetween(const WindowFrame& from, const WindowFrame& to, const StateCovariance& covariance,
-                                      WindowUpdate& update) const {
-  if (!to.imu) return;
-  const InertialState state = stateOf(from);
-  const std::vector<std::int64_t> times_ns = memory_.skippedBetween(from.t_ns, to.t_ns);
-  const std::vector<Preintegration> imu = integratedTo(state.bias, withAxes(*to.imu, window_.imuAxes()), times_ns);
-  for (std::size_t i = 0; i < times_ns.size(); ++i) {
-    update.replaced.emplace_back(times_ns[i], propagated(state, imu[i]).T_w_b);
-    update.replaced_covariances.push_back(propagatedCovariance(state, imu[i], covariance));
-  }
 }
 
 void Estimator::Impl::moveToAnchor() {
@@ -368,19 +339,29 @@ void Estimator::Impl::solve(WindowUpdate& update) {
   scale_drift_.afterSolve(window_);
   rejectOutliers(window_, params_.landmarks);
   placement_.add(window_);
+  updateUncertainties();
+  repropagate();
+  countLandmarks(window_, params_.degeneracy, update);
+}
+
+void Estimator::Impl::updateUncertainties() {
   const CameraPoses poses(window_);
   for (auto& [id, track] : window_.lines)
     if (entersProblem(track, params_.degeneracy)) updateLineUncertainty(poses, params_, track);
   for (auto& [id, track] : window_.points)
     if (track.triangulated) updatePointUncertainty(poses, params_.factors.point_sigma_px, track);
+}
+
+/// Integrates anew where the biases have moved too far for a linear correction.
+void Estimator::Impl::repropagate() {
+  constexpr double kMostGyro = 0.01, kMostAccel = 0.1;  // [rad/s], [m/s^2]
   for (std::size_t i = 1; i < window_.frames.size(); ++i) {
     WindowFrame& frame = window_.frames[i];
     const ImuBias bias = biasOf(window_.frames[i - 1].motion.data());
-    if (frame.imu &&
-        ((bias.gyro - frame.imu->bias().gyro).norm() > 0.01 || (bias.accel - frame.imu->bias().accel).norm() > 0.1))
+    if (frame.imu && ((bias.gyro - frame.imu->bias().gyro).norm() > kMostGyro ||
+                      (bias.accel - frame.imu->bias().accel).norm() > kMostAccel))
       frame.imu->repropagate(bias);
   }
-  countLandmarks(update);
 }
 
 void Estimator::Impl::shrink(bool second_newest_is_keyframe, WindowUpdate& update) {
@@ -468,21 +449,6 @@ void Estimator::Impl::fillFromMemory() {
   for (const StartMemory::Input& input : memory_.inputs()) {
     pending_imu_ = input.imu;
     addFrame(input.tracks);
-  }
-}
-
-void Estimator::Impl::countLandmarks(WindowUpdate& update) const {
-  const FrameId newest = window_.frames.back().id;
-  for (const auto& [id, track] : window_.points) update.points_used += track.triangulated;
-  for (const auto& [id, track] : window_.lines) {
-    update.lines_tracked += !track.sightings.empty() && track.sightings.back().frame == newest;
-    update.lines_placed += track.triangulated;
-    update.lines_used += entersProblem(track, params_.degeneracy);
-    update.lines_constrained += entersProblem(track, params_.degeneracy) && track.group != 0;
-    update.lines_degenerate += track.triangulated && track.degenerate();
-    update.lines_through_epipole += track.verdict == LineVerdict::kThroughEpipole;
-    update.lines_direction_unknown += track.verdict == LineVerdict::kDirectionUnknown;
-    update.lines_distance_unknown += track.verdict == LineVerdict::kDistanceUnknown;
   }
 }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "StartMemory.h"
+#include "initialisation/StartMemory.h"
 
 #include <algorithm>
 
