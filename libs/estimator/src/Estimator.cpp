@@ -235,6 +235,7 @@ void Estimator::Impl::initialise(WindowUpdate& update) {
   buffer.stamp_sigma_s = stampJitter_s();
   buffer.frames.front().imu.reset();
   update.reason = initializer_.initialise(buffer);
+  if (update.reason == kBiasImplausible) initializer_.expectLargerBias();
   if (!update.reason.empty()) {
     if (static_cast<int>(buffer.frames.size()) < params_.initializer.max_frames) return;
     waits_for_scale_ = update.reason == kScaleUnknown;
@@ -300,8 +301,10 @@ void Estimator::Impl::track(WindowUpdate& update) {
   ++tracks_since_start_;
   std::string failure = findFailure(window_, params_.failure, predicted);
   if (failure.empty() && onTrial() &&
-      biasOf(window_.frames.back().motion.data()).accel.norm() > trialBiasAccel(params_.initializer))
+      biasOf(window_.frames.back().motion.data()).accel.norm() > initializer_.mostBiasAccel()) {
     failure = "it led to an implausible accelerometer bias";
+    initializer_.expectLargerBias();
+  }
   if (failure.empty() && onTrial() && scale_drift_.leftStart()) failure = "its scale is not what later images show";
   if (failure.empty() && placement_.contradicted(onTrial()))
     failure = "most points that move in the images have no place that fits the estimated motion";

@@ -96,6 +96,11 @@ double medianDisparityPx(const SlidingWindow& window, std::size_t frame_a, std::
   return disparities.size() < 10 ? -1 : upperMedian(disparities) * window.camera().meanFocal();
 }
 
+void Initializer::expectLargerBias() {
+  double& sigma = params_.initializer.bias_accel_sigma;
+  sigma = std::max(sigma, params_.initializer.late_bias_accel_sigma);
+}
+
 bool Initializer::atRest(const SlidingWindow& window) const {
   const InitializerParams& p = params_.initializer;
   const ImuStatistics imu = imuStatistics(window, 1);
@@ -318,8 +323,8 @@ std::string Initializer::verify(SlidingWindow& window) const {
   if (errors.size() < 20 || static_cast<double>(errors.size()) < 0.6 * candidates)
     return "too few points agree with the motion";
   if (upperMedian(errors) > p.max_error_px) return "the images do not agree with the motion";
-  if (biasOf(window.frames.back().motion.data()).accel.norm() > std::min(p.max_bias_accel, trialBiasAccel(p)))
-    return "the accelerometer bias of the start is implausible";
+  if (biasOf(window.frames.back().motion.data()).accel.norm() > std::min(p.max_bias_accel, mostBiasAccel()))
+    return kBiasImplausible;
   if (!scaleWithin(1, window)) return kScaleUnknown;
   return {};
 }

@@ -19,8 +19,15 @@ class Initializer {
 
   /// Tries on all frames of `window`. On success its states, points and priors are set (first frame at the origin,
   /// yaw 0) and the result is empty; else the window is unchanged in frames and tracks, and the result says in words
-  /// what is waited for (kScaleUnknown where it is only the scale).
+  /// what is waited for (kScaleUnknown where it is only the scale, kBiasImplausible).
   std::string initialise(SlidingWindow& window) const;
+
+  /// Accelerometer bias that a start must not have, and not come to while it is on trial [m/s^2]: four standard
+  /// deviations of what is known of it beforehand. A wrong gyro bias or scale shows here first.
+  double mostBiasAccel() const { return 4 * params_.initializer.bias_accel_sigma; }
+
+  /// Further starts take the accelerometer for one whose bias is less known (`late_bias_accel_sigma`).
+  void expectLargerBias();
 
   /// True when points and IMU say that nothing moves over the whole buffer.
   bool atRest(const SlidingWindow& window) const;
@@ -50,13 +57,9 @@ class Initializer {
   void setBiasPrior(SlidingWindow& window, const MotionBlock& mean, double gyro_sigma, double velocity_sigma) const;
   void levelAndCentre(SlidingWindow& window) const;
 
-  const EstimatorParams params_;
+  EstimatorParams params_;
   Pose T_b_c_calibrated_;
 };
-
-/// Accelerometer bias that a start must not have, and not come to while it is on trial [m/s^2]: four standard
-/// deviations of what is known of it beforehand. A wrong gyro bias or scale shows here first.
-inline double trialBiasAccel(const InitializerParams& params) { return 4 * params.bias_accel_sigma; }
 
 /// Median motion of points between two frames of the window in pixels; `rotation_free` takes the gyro's rotation out.
 /// Negative when fewer than ten points are seen by both.

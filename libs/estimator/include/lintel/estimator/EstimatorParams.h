@@ -148,15 +148,16 @@ struct InitializerParams {
   double point_loss_width = 1;  ///< Cauchy width in a start, in standard deviations
   double min_parallax_px = 12;  ///< rotation-compensated, median, over the buffer; below: static or waiting
   double max_error_px = 2.0;    ///< median reprojection error of an accepted start
-  double max_scale_sigma = 0.04;     ///< relative standard deviation of the scale of an accepted start
-  double patience_s = 2;             ///< where a buffer is longer, it may be larger in proportion,
-  double late_scale_sigma = 0.1;     ///< at most this
-  double max_bias_accel = 1.5;       ///< [m/s^2]
-  double bias_gyro_sigma = 0.1;      ///< prior [rad/s]
-  double bias_accel_sigma = 0.2;     ///< prior [m/s^2]
-  double static_disparity_px = 0.7;  ///< median motion of points over the buffer below which the vehicle rests
-  double static_gyro_std = 0.03;     ///< [rad/s] and
-  double static_accel_std = 0.4;     ///< [m/s^2]: standard deviations over the buffer at rest
+  double max_scale_sigma = 0.04;       ///< relative standard deviation of the scale of an accepted start
+  double patience_s = 2;               ///< where a buffer is longer, it may be larger in proportion,
+  double late_scale_sigma = 0.1;       ///< at most this
+  double max_bias_accel = 1.5;         ///< [m/s^2]
+  double bias_gyro_sigma = 0.1;        ///< prior [rad/s]
+  double bias_accel_sigma = 0.2;       ///< prior [m/s^2],
+  double late_bias_accel_sigma = 0.5;  ///< and once a start was refused for its bias
+  double static_disparity_px = 0.7;    ///< median motion of points over the buffer below which the vehicle rests
+  double static_gyro_std = 0.03;       ///< [rad/s] and
+  double static_accel_std = 0.4;       ///< [m/s^2]: standard deviations over the buffer at rest
 
   template <class F>
   void fields(F&& field) {
@@ -172,6 +173,7 @@ struct InitializerParams {
     field("max_bias_accel", max_bias_accel, Range{0.001, 100});
     field("bias_gyro_sigma", bias_gyro_sigma, Range{1e-6, 10});
     field("bias_accel_sigma", bias_accel_sigma, Range{1e-6, 100});
+    field("late_bias_accel_sigma", late_bias_accel_sigma, Range{0, 100});
     field("static_disparity_px", static_disparity_px, Range{0, 100});
     field("static_gyro_std", static_gyro_std, Range{0, 10});
     field("static_accel_std", static_accel_std, Range{0, 100});
