@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "lintel/bench/BenchJobs.h"
 
-#include <cstdio>
-
 #include "lintel/core/ChildProcess.h"
+#include "lintel/core/Formatted.h"
 #include "lintel/core/TextFile.h"
 #include "lintel/core/Version.h"
 
@@ -13,19 +12,13 @@ namespace {
 
 namespace fs = std::filesystem;
 
-std::string sixDigits(double value) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%g", value);
-  return text;
-}
+std::string sixDigits(double value) { return formatted("%g", value); }
 
 /// FNV-1a: short, and the same everywhere.
 std::string hashOf(const std::string& text) {
   std::uint64_t hash = 0xcbf29ce484222325ULL;
   for (const char c : text) hash = (hash ^ static_cast<unsigned char>(c)) * 0x100000001b3ULL;
-  char digits[24];
-  std::snprintf(digits, sizeof digits, "%016llx", static_cast<unsigned long long>(hash));
-  return digits;
+  return formatted("%016llx", static_cast<unsigned long long>(hash));
 }
 
 /// What decides the result, but not where files happen to lie: a run made on another machine is the same run.

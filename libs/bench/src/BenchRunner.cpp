@@ -12,6 +12,7 @@
 #include "lintel/core/AtomicFile.h"
 #include "lintel/core/ChildProcess.h"
 #include "lintel/core/FolderLock.h"
+#include "lintel/core/Formatted.h"
 #include "lintel/evaluation/TrajectoryFile.h"
 #include "lintel/sensing/GroundTruth.h"
 
@@ -38,17 +39,10 @@ class JobLock {
   FolderLock lock_;
 };
 
-std::string nineDigits(double value) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.9g", value);
-  return text;
-}
+std::string nineDigits(double value) { return formatted("%.9g", value); }
 
 std::string seconds(std::int64_t t_ns) {
-  char text[40];
-  std::snprintf(text, sizeof text, "%lld.%09lld", static_cast<long long>(t_ns / 1000000000),
-                static_cast<long long>(t_ns % 1000000000));
-  return text;
+  return formatted("%lld.%09lld", static_cast<long long>(t_ns / 1000000000), static_cast<long long>(t_ns % 1000000000));
 }
 
 /// The last line that is not empty.
@@ -65,13 +59,11 @@ bool keepTruth(const std::string& source, bool is_recording, const fs::path& fil
   const StampedPoses truth = is_recording ? readGroundTruth(source) : readTrajectory(source);
   std::string text;
   const std::size_t step = std::max<std::size_t>(1, truth.size() / kKeptTruePoses);
-  char line[256];
   for (std::size_t i = 0; i < truth.size(); i += step) {
     const Eigen::Vector3d& p = truth[i].second.p;
     const Eigen::Quaterniond& q = truth[i].second.q;
-    std::snprintf(line, sizeof line, "%s %.6f %.6f %.6f %.9f %.9f %.9f %.9f\n", seconds(truth[i].first).c_str(), p.x(),
-                  p.y(), p.z(), q.x(), q.y(), q.z(), q.w());
-    text += line;
+    text += formatted("%s %.6f %.6f %.6f %.9f %.9f %.9f %.9f\n", seconds(truth[i].first).c_str(), p.x(), p.y(), p.z(),
+                      q.x(), q.y(), q.z(), q.w());
   }
   if (!text.empty()) AtomicFile::writeWhole(file.string(), text);
   return !text.empty();
@@ -181,10 +173,9 @@ JobOutcome BenchRunner::run(const BenchJob& job, bool retry_failed) const {
   const Json errors = readJson(job.folder / "evaluation.json");
   if (!errors.is_object() || !errors.contains("trajectory")) return {false, false, "no ground truth"};
   const Json& trajectory = errors["trajectory"];
-  char text[96];
-  std::snprintf(text, sizeof text, "RMSE %.4f m, %.0f %% covered", trajectory["position_m"].value("rmse", 0.0),
-                100 * trajectory.value("coverage_time", 0.0));
-  return {false, false, text};
+  return {false, false,
+          formatted("RMSE %.4f m, %.0f %% covered", trajectory["position_m"].value("rmse", 0.0),
+                    100 * trajectory.value("coverage_time", 0.0))};
 }
 
 }  // namespace lintel

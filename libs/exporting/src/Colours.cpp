@@ -4,9 +4,9 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstdio>
 #include <map>
 
+#include "lintel/core/Formatted.h"
 #include "lintel/core/Quantiles.h"
 
 namespace lintel {
@@ -85,10 +85,9 @@ std::vector<std::pair<std::string, Rgb>> LineColouring::legend(const std::vector
   for (const double share : {0.0, 0.5, 1.0}) {
     if (!scale || lines.empty()) break;
     const double value = low_ + share * (high_ - low_);
-    char text[40];
-    std::snprintf(text, sizeof text, mode_ == LineColour::kHeight ? "z %.2f m" : "sigma %.2g m",
-                  mode_ == LineColour::kHeight ? value : std::pow(10, value));
-    entries.emplace_back(text, scaleColour(share));
+    entries.emplace_back(formatted(mode_ == LineColour::kHeight ? "z %.2f m" : "sigma %.2g m",
+                                   mode_ == LineColour::kHeight ? value : std::pow(10, value)),
+                         scaleColour(share));
   }
   return entries;
 }

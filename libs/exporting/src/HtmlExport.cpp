@@ -7,6 +7,7 @@
 #include "ViewerPage.h"
 #include "Writers.h"
 #include "lintel/core/Base64.h"
+#include "lintel/core/Formatted.h"
 #include "lintel/core/TextFile.h"
 
 // One page that needs no network: page/viewer.html with three.js and the map put into it.
@@ -40,18 +41,12 @@ class Floats {
   std::string bytes_;
 };
 
-std::string cssColour(Rgb c) {
-  char text[8];
-  std::snprintf(text, sizeof text, "#%02x%02x%02x", c.r, c.g, c.b);
-  return text;
-}
+std::string cssColour(Rgb c) { return formatted("#%02x%02x%02x", c.r, c.g, c.b); }
 
 /// A number of the page's pop-up, rounded for reading; null if not finite.
 Json rounded(double v) {
   if (!std::isfinite(v)) return nullptr;
-  char text[32];
-  std::snprintf(text, sizeof text, "%.4g", v);
-  return std::strtod(text, nullptr);
+  return std::strtod(formatted("%.4g", v).c_str(), nullptr);
 }
 
 double secondsSince(std::int64_t t_ns, std::int64_t origin_ns) {

@@ -6,6 +6,8 @@
 #include <opencv2/imgproc.hpp>
 #include <vector>
 
+#include "lintel/core/Formatted.h"
+
 namespace lintel {
 
 namespace {
@@ -93,9 +95,7 @@ void drawScaleBar(double px_per_m, cv::Mat& panel) {
             y = panel.rows - 18;
   const cv::Scalar ink(60, 60, 60);
   cv::rectangle(panel, cv::Rect(x, y, length_px, 4), ink, cv::FILLED);
-  char text[32];
-  std::snprintf(text, sizeof text, "%g m", length_m);
-  drawText(panel, text, {x, y - 6});
+  drawText(panel, formatted("%g m", length_m), {x, y - 6});
 }
 
 }  // namespace

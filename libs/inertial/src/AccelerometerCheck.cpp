@@ -4,8 +4,8 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstdio>
 
+#include "lintel/core/Formatted.h"
 #include "lintel/core/Quantiles.h"
 #include "lintel/geometry/Frames.h"
 #include "lintel/geometry/Rotation.h"
@@ -117,9 +117,7 @@ std::string AccelerometerCheck::sizeFault() const {
     return "the accelerometer's values do not change although the IMU turns: check that they are recorded";
   const double seen = gravity();
   if (std::abs(seen / gravity_m_s2_ - 1) < kSizeTolerance) return {};
-  char text[200];
-  std::snprintf(text, sizeof text, "the accelerometer shows %.2f m/s^2 where gravity is %.2f", seen, gravity_m_s2_);
-  std::string fault = text;
+  std::string fault = formatted("the accelerometer shows %.2f m/s^2 where gravity is %.2f", seen, gravity_m_s2_);
   if (std::abs(seen - 1) < kSizeTolerance)
     fault += ": its values are in g, not in m/s^2";
   else if (seen < kLeastGravity)

@@ -3,9 +3,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 
 #include "WhiteNoise.h"
+#include "lintel/core/Formatted.h"
 
 namespace lintel {
 
@@ -57,9 +57,7 @@ double sum(double white, double remaining_vibration, double motion) {
 
 std::string remark(const char* what, double given, double taken, const char* unit) {
   if (given > taken / 1.01 && given < taken * 1.01) return {};
-  char text[200];
-  std::snprintf(text, sizeof text, "%s: %.2g %s are given, the samples show about %.2g", what, given, unit, taken);
-  return text;
+  return formatted("%s: %.2g %s are given, the samples show about %.2g", what, given, unit, taken);
 }
 
 }  // namespace

@@ -4,9 +4,9 @@
 #include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 
 #include "TurnFault.h"
+#include "lintel/core/Formatted.h"
 #include "lintel/core/Quantiles.h"
 #include "lintel/geometry/Rotation.h"
 #include "lintel/geometry/SmallMatrices.h"
@@ -157,17 +157,14 @@ std::string TurnCheck::fault(Suspicion suspicion, double corrected_s) const {
   const TurnFit best = bestFit();
   const bool clocks = std::abs(best.offset_s) > kSearchedBefore_s && best.missed < kClearlyLess * here.missed;
   if (!clocks && here.missed < (alone ? kUnrelatedMisses : kLargestMissed)) return faultOf(here, R_b_c_, suspicion);
-  char text[300];
   if (!clocks || best.missed > kLargestMissed) {
-    std::snprintf(
-        text, sizeof text,
+    return formatted(
         "images and gyroscope do not turn together (%.0f %% of the images' turns are not in it): check that both "
         "are of the same recording, their stamps (unit, rate, order), and the gyroscope's axes and unit",
         std::min(100.0, 100 * here.missed));
-    return text;
   }
-  std::snprintf(text, sizeof text,
-                "the clocks of images and IMU differ: an image with stamp t shows the world at t %+.2f s of the IMU",
+  const std::string text =
+      formatted("the clocks of images and IMU differ: an image with stamp t shows the world at t %+.2f s of the IMU",
                 best.offset_s + corrected_s);
   const std::string more = faultOf(best, R_b_c_, suspicion);
   return text + (more.empty() ? "" : "; " + more);

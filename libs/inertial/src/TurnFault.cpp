@@ -5,8 +5,8 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstdio>
 
+#include "lintel/core/Formatted.h"
 #include "lintel/geometry/Rotation.h"
 #include "lintel/geometry/SmallMatrices.h"
 
@@ -53,21 +53,17 @@ std::string columnsOf(const Eigen::Matrix3d& given_to_true) {
 }
 
 std::string scaleFault(double scale) {
-  char text[300];
   if (std::abs(std::log(scale * kDegrees)) < std::log(kLargestScale)) {
     return "the gyroscope's values are in degrees/s, not in rad/s";
   }
-  std::snprintf(
-      text, sizeof text,
+  return formatted(
       "the images turn %.2f times as much as the gyroscope: check its unit (rad/s), the rate of its stamps and "
       "the focal length",
       scale);
-  return text;
 }
 
 /// Q: by which rotation the camera's axes are off, in its own axes; R: from the camera to the body, as calibrated.
 std::string rotationFault(const Eigen::Matrix3d& Q, const Eigen::Matrix3d& R) {
-  char text[300];
   const Eigen::AngleAxisd turn(Q);
   const double degrees = kDegrees * turn.angle();
   const Eigen::Vector3d axis = turn.axis().cwiseAbs();
@@ -75,9 +71,8 @@ std::string rotationFault(const Eigen::Matrix3d& Q, const Eigen::Matrix3d& R) {
                       : axis.x() > 0.9 ? " about its x axis"
                       : axis.y() > 0.9 ? " about its y axis"
                                        : "";
-  std::snprintf(text, sizeof text, "the camera seems to be turned by about %.0f degrees%s against what T_BS says",
-                degrees, about);
-  std::string fault = text;
+  std::string fault =
+      formatted("the camera seems to be turned by about %.0f degrees%s against what T_BS says", degrees, about);
   const std::string columns = columnsOf(R * Q * R.transpose());
   if (kDegrees * Eigen::AngleAxisd(R).angle() > kSameTurn_deg && degreesBetween(Q, R * R) < kSameTurn_deg)
     return fault +
@@ -119,13 +114,11 @@ std::string faultOf(const TurnFit& fit, const Eigen::Quaterniond& R_b_c, Suspici
   if (suspicion == Suspicion::kNone) return {};
   const double focal = std::sqrt(std::abs(gain.x() * gain.y())) / gain.z();
   if (std::abs(std::log(focal)) > std::log(kLargestScale) + kSignificant * sigma) {
-    char text[300];
-    std::snprintf(text, sizeof text,
-                  "the focal length (or the distortion) seems to be wrong, as if it were %.0f %% too %s: turns about "
-                  "the image's axes come out as %.2f times those "
-                  "about the viewing axis",
-                  100 * std::abs(1 / focal - 1), focal < 1 ? "long" : "short", focal);
-    return text;
+    return formatted(
+        "the focal length (or the distortion) seems to be wrong, as if it were %.0f %% too %s: turns about "
+        "the image's axes come out as %.2f times those "
+        "about the viewing axis",
+        100 * std::abs(1 / focal - 1), focal < 1 ? "long" : "short", focal);
   }
   if (std::abs(std::log(scale)) > std::log(kLargestScale) + kSignificant * sigma) return scaleFault(scale);
   return {};

@@ -5,6 +5,8 @@
 #include <cmath>
 #include <limits>
 
+#include "lintel/core/Formatted.h"
+
 namespace lintel {
 
 namespace {
@@ -107,9 +109,7 @@ Figure relativeErrorBoxes(const NamedErrors& errors) {
   std::sort(lengths_m.begin(), lengths_m.end());
   lengths_m.erase(std::unique(lengths_m.begin(), lengths_m.end()), lengths_m.end());
   for (const double length_m : lengths_m) {
-    char text[32];
-    std::snprintf(text, sizeof text, "%g m", length_m);
-    figure.x_names.push_back(text);
+    figure.x_names.push_back(formatted("%g m", length_m));
   }
   const double width = 0.8 / static_cast<double>(std::max<std::size_t>(1, errors.size()));
   for (std::size_t k = 0; k < errors.size(); ++k) {

@@ -2,8 +2,8 @@
 #include "EstimationStage.h"
 
 #include <algorithm>
-#include <cstdio>
 
+#include "lintel/core/Formatted.h"
 #include "lintel/core/FreeMemory.h"
 #include "lintel/mapping/LineSpacing.h"
 #include "lintel/mapping/MapStructure.h"
@@ -194,9 +194,7 @@ void EstimationStage::count(const WindowUpdate& update) {
   }
   if (update.status == EstimatorStatus::kLost) {
     ++s.resets;
-    char text[64];
-    std::snprintf(text, sizeof text, "at %.2f s: ", t_s);
-    s.failures.push_back(text + update.reason);
+    s.failures.push_back(formatted("at %.2f s: ", t_s) + update.reason);
     if (update.failure == Failure::kInterrupted) interrupted_ns_ = update.t_ns;
   }
   if (update.status == EstimatorStatus::kTracking) {

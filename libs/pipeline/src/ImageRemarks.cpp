@@ -2,7 +2,8 @@
 #include "ImageRemarks.h"
 
 #include <algorithm>
-#include <cstdio>
+
+#include "lintel/core/Formatted.h"
 
 namespace lintel {
 namespace {
@@ -14,15 +15,12 @@ constexpr double kAllOver = 0.5;  ///< of the image: more than a vehicle shows o
 
 std::string vehicleRemark(double share) {
   if (!(share > 0)) return {};
-  char text[500];
-  std::snprintf(
-      text, sizeof text,
+  return formatted(
       "%.0f %% of the image move with the camera (a part of the vehicle, a hand, the rim of the lens): left out "
       "since they were found, when the camera turned to and fro; look at mask.pgm beside the trajectory, where "
       "they are black: given as --mask it leaves them out from the first image on%s",
       std::max(1.0, 100 * share),
       share > kAllOver ? "; so much of it may be the pattern of an infrared projector: switch it off" : "");
-  return text;
 }
 
 std::string imagesRemark(const FrontEndStatistics& tracking) {
@@ -42,16 +40,12 @@ std::string imageFault(const FrontEndStatistics& tracking) {
   const auto share = [&](std::int64_t count) {
     return tracking.frames > 0 ? static_cast<double>(count) / static_cast<double>(tracking.frames) : 0.0;
   };
-  char text[160];
   if (const double blank = share(tracking.images_without_contrast); blank > kFaulty) {
-    std::snprintf(text, sizeof text, "%.0f %% of the images show nothing (dark, covered or overexposed)", 100 * blank);
-    return text;
+    return formatted("%.0f %% of the images show nothing (dark, covered or overexposed)", 100 * blank);
   }
   if (const double repeated = share(tracking.images_repeated); repeated > kFaulty) {
-    std::snprintf(text, sizeof text,
-                  "%.0f %% of the images repeat the one before although the IMU turns: the recorder lost images",
-                  100 * repeated);
-    return text;
+    return formatted("%.0f %% of the images repeat the one before although the IMU turns: the recorder lost images",
+                     100 * repeated);
   }
   return {};
 }

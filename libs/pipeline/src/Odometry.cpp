@@ -2,7 +2,6 @@
 #include "lintel/pipeline/Odometry.h"
 
 #include <algorithm>
-#include <cstdio>
 #include <deque>
 #include <exception>
 #include <optional>
@@ -18,6 +17,7 @@
 #include "RunCheck.h"
 #include "TrackingStage.h"
 #include "lintel/core/BoundedQueue.h"
+#include "lintel/core/Formatted.h"
 #include "lintel/sensing/ShiftedRecording.h"
 
 namespace lintel {
@@ -108,12 +108,10 @@ void addClock(const ClockSearch& search, OdometryResult& result) {
   if (search.offset_s == 0) return;
   result.time_offset_s += search.offset_s;
   result.window_calibration.time_offset_s += search.offset_s;
-  char text[160];
-  std::snprintf(text, sizeof text,
-                "clocks of images and IMU: an image with stamp t shows the world at t %+.1f ms; found from their "
+  result.remarks.emplace_back(
+      formatted("clocks of images and IMU: an image with stamp t shows the world at t %+.1f ms; found from their "
                 "rotations before the start, corrected",
-                1000 * search.offset_s);
-  result.remarks.emplace_back(text);
+                1000 * search.offset_s));
 }
 
 }  // namespace

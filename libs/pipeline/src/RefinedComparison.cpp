@@ -3,8 +3,8 @@
 
 #include <cmath>
 #include <cstdint>
-#include <cstdio>
 
+#include "lintel/core/Formatted.h"
 #include "lintel/geometry/Alignment.h"
 
 namespace lintel {
@@ -59,13 +59,10 @@ RefinedComparison compareWithRefined(const std::vector<OdometryPose>& causal, co
 std::string contradictionOf(const OdometryResult& result) {
   const RefinedComparison c = compareWithRefined(result.trajectory, result.refined_trajectory, result.map.pieces);
   if (c.rms_m <= kLargest_m + kLargestShare * c.path_m) return {};
-  char text[300];
-  std::snprintf(
-      text, sizeof text,
+  return formatted(
       "the causal trajectory is %.2f m (rms, over %.1f m) away from the refined one, which agrees with images "
       "and IMU: use the refined trajectory and the map; or start where it moves more strongly (--from)",
       c.rms_m, c.path_m);
-  return text;
 }
 
 }  // namespace lintel

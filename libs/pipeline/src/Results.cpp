@@ -2,11 +2,11 @@
 #include "lintel/pipeline/Results.h"
 
 #include <cinttypes>
-#include <cstdio>
 #include <filesystem>
 #include <stdexcept>
 
 #include "lintel/core/AtomicFile.h"
+#include "lintel/core/Formatted.h"
 #include "lintel/exporting/MapExport.h"
 #include "lintel/mapping/MapFile.h"
 
@@ -59,13 +59,11 @@ std::vector<std::string> writeExports(const LineMap& map, const std::string& fol
 
 std::string trajectoryText(const std::vector<OdometryPose>& trajectory) {
   std::string text = "# timestamp tx ty tz qx qy qz qw\n";
-  char line[256];
   for (const OdometryPose& pose : trajectory) {
     const Eigen::Vector3d& p = pose.T_w_b.p;
     const Eigen::Quaterniond& q = pose.T_w_b.q;
-    std::snprintf(line, sizeof line, "%" PRId64 ".%09" PRId64 " %.9f %.9f %.9f %.9f %.9f %.9f %.9f\n",
-                  pose.t_ns / 1000000000, pose.t_ns % 1000000000, p.x(), p.y(), p.z(), q.x(), q.y(), q.z(), q.w());
-    text += line;
+    text += formatted("%" PRId64 ".%09" PRId64 " %.9f %.9f %.9f %.9f %.9f %.9f %.9f\n", pose.t_ns / 1000000000,
+                      pose.t_ns % 1000000000, p.x(), p.y(), p.z(), q.x(), q.y(), q.z(), q.w());
   }
   return text;
 }
@@ -75,16 +73,11 @@ std::string covarianceText(const std::vector<OdometryPose>& trajectory) {
   std::string text = "# timestamp";
   for (int i = 0; i < 6; ++i)
     for (int j = i; j < 6; ++j) text += std::string(",") + kNames[i] + "_" + kNames[j];
-  char number[64];
   for (const OdometryPose& pose : trajectory) {
-    std::snprintf(number, sizeof number, "\n%" PRId64 ".%09" PRId64, pose.t_ns / 1000000000, pose.t_ns % 1000000000);
-    text += number;
+    text += formatted("\n%" PRId64 ".%09" PRId64, pose.t_ns / 1000000000, pose.t_ns % 1000000000);
     const PoseCovariance covariance = toEulerCovariance(covarianceOf(pose), pose.T_w_b.q);
     for (int i = 0; i < 6; ++i)
-      for (int j = i; j < 6; ++j) {
-        std::snprintf(number, sizeof number, ",%.9e", covariance(i, j));
-        text += number;
-      }
+      for (int j = i; j < 6; ++j) text += formatted(",%.9e", covariance(i, j));
   }
   return text + "\n";
 }

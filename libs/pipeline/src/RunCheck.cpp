@@ -2,9 +2,9 @@
 #include "RunCheck.h"
 
 #include <cmath>
-#include <cstdio>
 
 #include "ImageRemarks.h"
+#include "lintel/core/Formatted.h"
 #include "lintel/core/Quantiles.h"
 
 namespace lintel {
@@ -50,12 +50,10 @@ std::string calibrationFault(const Rig& given, const Rig& estimated) {
   if (std::abs(focal) <= kLargestFocalChange && turn_rad <= kLargestTurn_rad && move_m <= kLargestMove_m &&
       centre_px <= kLargestTurn_rad * given.camera.meanFocal())
     return {};
-  char text[200];
-  std::snprintf(text, sizeof text,
-                "the estimate left the given calibration: focal length %+.0f %%, centre moved by %.0f px, mounting "
-                "turned by %.0f degrees and moved by %.0f cm",
-                100 * focal, centre_px, turn_rad * 57.29577951, 100 * move_m);
-  return text;
+  return formatted(
+      "the estimate left the given calibration: focal length %+.0f %%, centre moved by %.0f px, mounting "
+      "turned by %.0f degrees and moved by %.0f cm",
+      100 * focal, centre_px, turn_rad * 57.29577951, 100 * move_m);
 }
 
 }  // namespace
@@ -75,10 +73,8 @@ void RunCheck::add(const TrackedFrame& frame, const WindowUpdate& update) {
 void RunCheck::watchFailures(const WindowUpdate& update) {
   if (first_ns_ < 0) first_ns_ = update.t_ns;
   if (update.failure != Failure::kDiverged || !divergence_.empty()) return;
-  char text[40];
-  std::snprintf(text, sizeof text,
-                "the estimate diverged at %.1f s: ", 1e-9 * static_cast<double>(update.t_ns - first_ns_));
-  divergence_ = text + update.reason;
+  divergence_ = formatted("the estimate diverged at %.1f s: ", 1e-9 * static_cast<double>(update.t_ns - first_ns_)) +
+                update.reason;
 }
 
 void RunCheck::watchImu(const WindowUpdate& update) {
@@ -136,19 +132,16 @@ std::map<std::string, double> RunCheck::evidence() const {
 
 std::string RunCheck::symptom(const OdometryStatistics& s, const Rig& estimated,
                               const RefinementReport& refinement) const {
-  char text[200];
   const double after_first = static_cast<double>(s.last_frame_ns - s.first_frame_ns) * 1e-9 - s.first_start_s;
   const double all = static_cast<double>(s.last_frame_ns - s.first_frame_ns) * 1e-9;
   const double expected = s.first_start_s < 0 || all <= 0 ? 0 : static_cast<double>(s.frames) * after_first / all;
   if (!(largest_acceleration_ < kLargestAcceleration)) {
-    std::snprintf(text, sizeof text, "the estimate diverged: it gained %.0f m/s within 5 s", 5 * largest_acceleration_);
-    return text;
+    return formatted("the estimate diverged: it gained %.0f m/s within 5 s", 5 * largest_acceleration_);
   }
   if (!divergence_.empty()) return divergence_;
   if (s.resets > 0 && static_cast<double>(s.frames_with_pose) < kLeastShareWithPose * expected) {
-    std::snprintf(text, sizeof text, "the estimate did not last: %zu starts, poses for %.0f %% of the frames",
-                  s.resets + 1, 100 * static_cast<double>(s.frames_with_pose) / static_cast<double>(s.frames));
-    return text;
+    return formatted("the estimate did not last: %zu starts, poses for %.0f %% of the frames", s.resets + 1,
+                     100 * static_cast<double>(s.frames_with_pose) / static_cast<double>(s.frames));
   }
   const std::string fault = imuFault(refinement);
   return fault.empty() ? calibrationFault(rig_, estimated) : fault;
@@ -160,11 +153,8 @@ std::string RunCheck::imuFault(const RefinementReport& refinement) const {
   const double misfit = upperQuantile(misfits, 0.5);
   const bool other_axes = accelerometer_.axesMisfit() > kOtherAxesFit;
   if (misfit < (other_axes ? kSuspectImuMisfit : kLargestImuMisfit)) return accelFault(refinement);
-  char text[200];
-  std::snprintf(text, sizeof text,
-                "images and IMU contradict each other: the IMU is off by %.1f times its noise between keyframes",
-                std::sqrt(misfit / kExpectedMisfit));
-  return text;
+  return formatted("images and IMU contradict each other: the IMU is off by %.1f times its noise between keyframes",
+                   std::sqrt(misfit / kExpectedMisfit));
 }
 
 std::string RunCheck::accelFault(const RefinementReport& refinement) const {
@@ -183,10 +173,7 @@ std::string RunCheck::cause(const OdometryStatistics& s) const {
   if (std::string fault = turns_.fault(Suspicion::kSome, clock_offset_s_); !fault.empty()) return fault;
   if (std::string fault = accelerometer_.axesFault(); !fault.empty()) return fault;
   if (const double lever_m = rig_.T_b_c.p.norm(); lever_m > kLongLever_m) {
-    char text[120];
-    std::snprintf(text, sizeof text, "T_BS says that the camera is %.1f m away from the IMU: check its unit (m)",
-                  lever_m);
-    return text;
+    return formatted("T_BS says that the camera is %.1f m away from the IMU: check its unit (m)", lever_m);
   }
   if (!turns_.agree()) return {};
   if (s.frames_with_pose == 0 && s.last_wait == kScaleUnknown)

@@ -2,7 +2,8 @@
 #include "lintel/pipeline/SecondTry.h"
 
 #include <algorithm>
-#include <cstdio>
+
+#include "lintel/core/Formatted.h"
 
 namespace lintel {
 
@@ -33,14 +34,11 @@ bool isBetter(const OdometryResult& second, const OdometryResult& first) {
 }
 
 std::string verdictOfSecondTry(const OdometryResult& second) {
-  char text[300];
-  std::snprintf(
-      text, sizeof text,
+  return formatted(
       "the motion hardly shows the scale: the refined trajectory and the map may be several per cent too "
       "large or too small (%.1f %% by their residuals), the causal trajectory more; start where it moves more "
       "strongly (--from)",
       100 * second.refinement.scale_sigma);
-  return text;
 }
 
 }  // namespace lintel

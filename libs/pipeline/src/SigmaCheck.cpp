@@ -3,7 +3,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
+
+#include "lintel/core/Formatted.h"
 
 namespace lintel {
 
@@ -32,12 +33,10 @@ void SigmaCheck::add(const WindowUpdate& update) {
 
 std::string SigmaCheck::fault() const {
   if (worst_ <= 1) return {};
-  char text[300];
-  std::snprintf(text, sizeof text,
-                "the images show too little: after a way of %.1f m the position is unknown by %.1f m (one standard "
-                "deviation); show the camera more texture or a wider view, or leave this part out (--from, --to)",
-                worst_way_m_, worst_sigma_m_);
-  return text;
+  return formatted(
+      "the images show too little: after a way of %.1f m the position is unknown by %.1f m (one standard "
+      "deviation); show the camera more texture or a wider view, or leave this part out (--from, --to)",
+      worst_way_m_, worst_sigma_m_);
 }
 
 }  // namespace lintel

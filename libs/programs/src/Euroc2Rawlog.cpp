@@ -10,6 +10,7 @@
 #include "ProgramMain.h"
 #include "RecordingOptions.h"
 #include "StopSignals.h"
+#include "lintel/core/Formatted.h"
 #include "lintel/reporting/Progress.h"
 #include "lintel/sensing/EurocToRawlog.h"
 
@@ -61,8 +62,7 @@ class Euroc2Rawlog {
   }
 
   void print(const EurocToRawlogSummary& summary) const {
-    char duration[32];
-    std::snprintf(duration, sizeof duration, "%.2f s", static_cast<double>(summary.last_ns - summary.first_ns) * 1e-9);
+    const std::string duration = formatted("%.2f s", static_cast<double>(summary.last_ns - summary.first_ns) * 1e-9);
     out_ << output_ << ": " << duration << ", ";
     for (const auto& [label, count] : summary.images) out_ << count << " images " << label << ", ";
     out_ << summary.imu_samples << " samples imu0";

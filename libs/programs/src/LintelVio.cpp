@@ -18,6 +18,7 @@
 #include "RunFolder.h"
 #include "StopSignals.h"
 #include "lintel/core/AtomicFile.h"
+#include "lintel/core/Formatted.h"
 #include "lintel/core/TextFile.h"
 #include "lintel/exporting/MapExport.h"
 #include "lintel/pages/RunReport.h"
@@ -233,9 +234,7 @@ class LintelVio {
       series_.add(tracks, update);
       saveForNow(update);
       if (draw_tracks_.empty()) return;
-      char name[32];
-      std::snprintf(name, sizeof name, "%06zu.png", done - 1);
-      drawTracks((fs::path(draw_tracks_) / name).string(), frame, calibration_, tracks);
+      drawTracks((fs::path(draw_tracks_) / formatted("%06zu.png", done - 1)).string(), frame, calibration_, tracks);
     };
     OdometryResult result = runOdometry(recording, configuration, options);
     checkpoint_->flush();
@@ -274,10 +273,8 @@ class LintelVio {
   /// What is said of a run that a signal has ended.
   static std::string stoppedBy(const StopSignals& stop, const OdometryResult& result) {
     const OdometryStatistics& s = result.statistics;
-    char text[80];
-    std::snprintf(text, sizeof text, "stopped by %s after %.1f s of the recording", stop.name().c_str(),
-                  1e-9 * static_cast<double>(s.last_frame_ns - s.first_frame_ns));
-    return text;
+    return formatted("stopped by %s after %.1f s of the recording", stop.name().c_str(),
+                     1e-9 * static_cast<double>(s.last_frame_ns - s.first_frame_ns));
   }
 
   void writeOutput(const OdometryResult& result, const std::vector<std::string>& warnings) {

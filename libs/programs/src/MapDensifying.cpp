@@ -10,6 +10,7 @@
 #include "ProgramMain.h"
 #include "RecordingOptions.h"
 #include "StopSignals.h"
+#include "lintel/core/Formatted.h"
 #include "lintel/evaluation/TrajectoryFile.h"
 #include "lintel/mapping/MapFile.h"
 #include "lintel/pipeline/MapDensification.h"
@@ -116,10 +117,9 @@ class MapDensifying {
       for (const MapLine& line : map.lines) sum_m += line.segment_w.length();
       return sum_m;
     };
-    char text[160];
-    std::snprintf(text, sizeof text, "%zu lines of %.0f m, before %zu of %.0f m; %zu images searched\n",
-                  result.map.lines.size(), length(result.map), before.lines.size(), length(before),
-                  result.report.images);
+    const std::string text =
+        formatted("%zu lines of %.0f m, before %zu of %.0f m; %zu images searched\n", result.map.lines.size(),
+                  length(result.map), before.lines.size(), length(before), result.report.images);
     out_ << output_ << ": " << text << "  open it with lintel-map " << output_ << " -o map.glb\n";
   }
 

@@ -3,9 +3,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 
 #include "lintel/core/ChildProcess.h"
+#include "lintel/core/Formatted.h"
 
 namespace lintel {
 
@@ -13,11 +13,7 @@ namespace {
 
 constexpr const char* kNoGnuplot = "plots need gnuplot: install gnuplot-nox";
 
-std::string number(double value) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.7g", value);
-  return text;
-}
+std::string number(double value) { return formatted("%.7g", value); }
 
 /// A text between double quotes, as gnuplot reads it. What is between backquotes it would run as a command.
 std::string quoted(const std::string& text) {

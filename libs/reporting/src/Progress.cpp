@@ -5,21 +5,15 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <iostream>
+
+#include "lintel/core/Formatted.h"
 
 namespace lintel {
 namespace {
 
 constexpr std::chrono::milliseconds kBarPeriod{100}, kLinePeriod{5000};
 constexpr std::size_t kBarWidth = 24;
-
-template <class... Values>
-std::string formatted(const char* format, Values... values) {
-  char buffer[96];
-  std::snprintf(buffer, sizeof buffer, format, values...);
-  return buffer;
-}
 
 }  // namespace
 

@@ -3,8 +3,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 
+#include "lintel/core/Formatted.h"
 #include "lintel/reporting/HtmlPage.h"
 
 namespace lintel {
@@ -97,9 +97,7 @@ std::string htmlOf(const Table& table) {
 
 std::string fixedText(double value, int decimals) {
   if (!std::isfinite(value)) return "-";
-  char text[64];
-  std::snprintf(text, sizeof text, "%.*f", decimals, value);
-  return text;
+  return formatted("%.*f", decimals, value);
 }
 
 }  // namespace lintel

@@ -2,7 +2,6 @@
 #pragma once
 
 #include <algorithm>
-#include <cstdio>
 #include <deque>
 #include <functional>
 #include <limits>
@@ -13,6 +12,7 @@
 
 #include "ReadAhead.h"
 #include "TimeTicks.h"
+#include "lintel/core/Formatted.h"
 
 namespace lintel {
 
@@ -43,9 +43,7 @@ class EvenTimes {
     if (stamps.empty()) return;  // they may begin later
     times_.emplace(stamps);
     if (!times_->found()) return;
-    char text[80];
-    std::snprintf(text, sizeof text, ": their times are taken as even, %.0f a second", times_->rate_hz());
-    say(times_->remark() + text);
+    say(times_->remark() + formatted(": their times are taken as even, %.0f a second", times_->rate_hz()));
     for (const std::int64_t t_ns : stamps) times_->push(t_ns);
   }
 

@@ -4,10 +4,10 @@
 #include <algorithm>
 #include <cmath>
 #include <complex>
-#include <cstdio>
 #include <limits>
 
 #include "StampLine.h"
+#include "lintel/core/Formatted.h"
 
 namespace lintel {
 
@@ -77,9 +77,7 @@ FrameTimes::FrameTimes(const std::vector<std::int64_t>& first) {
   scatter_ns_ = std::sqrt(squares);
   const double ratio = squares * intervals / std::max(1.0, of_intervals);
   if (scatter_ns_ < kScatter_ns || ratio < kLeastRatio || ratio > kMostRatio) return;
-  char text[120];
-  std::snprintf(text, sizeof text, "the stamps of images scatter by %.1f ms about even ones", 1e-6 * scatter_ns_);
-  remark_ = text;
+  remark_ = formatted("the stamps of images scatter by %.1f ms about even ones", 1e-6 * scatter_ns_);
 }
 
 /// Where a frame comes early for the number after the last: those before it were held up, and are moved back if a

@@ -2,7 +2,8 @@
 #include "HeldValues.h"
 
 #include <cmath>
-#include <cstdio>
+
+#include "lintel/core/Formatted.h"
 
 namespace lintel {
 
@@ -28,10 +29,8 @@ void HeldValues::look() {
     const double mean = sum / runs, variance = squares / runs - mean * mean;
     if (runs < kLeastRuns || mean < kLeastLength || variance > kRegular * mean * (mean - 1)) continue;
     sensor.reach = static_cast<std::size_t>(std::ceil(kReach * mean));
-    char text[120];
-    std::snprintf(text, sizeof text, "%sthe IMU's %s are each repeated in %.1f samples", remark_.empty() ? "" : "; ",
-                  sensor.name, mean);
-    remark_ += text;
+    remark_ +=
+        formatted("%sthe IMU's %s are each repeated in %.1f samples", remark_.empty() ? "" : "; ", sensor.name, mean);
   }
 }
 

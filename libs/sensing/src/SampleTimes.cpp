@@ -3,9 +3,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 
 #include "StampLine.h"
+#include "lintel/core/Formatted.h"
 
 namespace lintel {
 
@@ -59,17 +59,15 @@ SampleTimes::SampleTimes(const std::vector<std::int64_t>& first) {
   const Intervals intervals = intervalsOf(first);
   if (intervals.mean_ns <= 0) return;  // all stamped together
   mean_ns_ = intervals.mean_ns;
-  char text[200] = "";
   if (intervals.short_share > kShortShare) {
     drop_out_ns_ = kDropOut * intervals.long_ns;
-    std::snprintf(text, sizeof text, "IMU samples come in packets of about %.0f that were stamped on arrival",
-                  intervals.samples_each);
+    remark_ =
+        formatted("IMU samples come in packets of about %.0f that were stamped on arrival", intervals.samples_each);
   } else if (intervals.scatter_ns > kScatter * mean_ns_ && intervals.correlation < kCorrelation) {
     drop_out_ns_ = kDropOut * mean_ns_;
-    std::snprintf(text, sizeof text, "the stamps of IMU samples scatter by %.1f ms about even ones",
-                  1e-6 * intervals.scatter_ns / std::sqrt(2.0));
+    remark_ = formatted("the stamps of IMU samples scatter by %.1f ms about even ones",
+                        1e-6 * intervals.scatter_ns / std::sqrt(2.0));
   }
-  remark_ = text;
 }
 
 /// Whether there is a drop-out before sample i.

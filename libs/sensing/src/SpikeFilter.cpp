@@ -3,8 +3,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <vector>
+
+#include "lintel/core/Formatted.h"
 
 namespace lintel {
 
@@ -53,11 +54,9 @@ std::string SpikeFilter::fault(std::size_t i) const {
   if (isZero(samples_[i]) && !isZero(samples_[i - 1]) && !isZero(samples_[i + 1])) return "all values are zero";
   for (int axis = 0; axis < 6; ++axis) {
     if (!isSpike(i, axis)) continue;
-    char text[120];
-    std::snprintf(text, sizeof text, "%s %.3g %s stands out from those around it",
-                  axis < 3 ? "an angular rate of" : "an acceleration of", valueOf(samples_[i], axis),
-                  axis < 3 ? "rad/s" : "m/s^2");
-    return text;
+    return formatted("%s %.3g %s stands out from those around it",
+                     axis < 3 ? "an angular rate of" : "an acceleration of", valueOf(samples_[i], axis),
+                     axis < 3 ? "rad/s" : "m/s^2");
   }
   return "";
 }

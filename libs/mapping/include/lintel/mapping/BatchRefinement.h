@@ -121,22 +121,12 @@ class BatchRefinement {
                           const std::function<void(MapMaterial&)>& place = {}) const;
 
  private:
-  /// Which landmarks take part in the adjustment.
-  struct Used {
-    std::vector<bool> points, lines;
-  };
-  Used usedOf(const MapMaterial& material) const;
-  void takeFewer(const MapMaterial& material, Used& used) const;
-  std::size_t viewsEach(const MapMaterial& material, const Used& used) const;
   std::vector<CameraErrors> errorsOf(MapMaterial& material) const;
   RefinementReport adjust(MapMaterial& material, const RefinementProgress& progress,
                           const std::vector<PointJoin>& joins) const;
   /// One round; false: no solution, or `goOn` ended it.
   bool adjustOnce(int round, const std::vector<PointJoin>& joins, const std::function<bool(int)>& goOn,
                   MapMaterial& material, RefinementReport& report) const;
-  /// Whether the result may be used, into the report.
-  void judge(const MapMaterial& before, const std::vector<PointRecord>& held_out, const MapMaterial& material,
-             RefinementReport& report) const;
   /// Landmarks, those held out too, and errors of the cameras of a result that is used.
   void complete(const std::vector<PointRecord>& held_out, MapMaterial& material, RefinementReport& report) const;
 
