@@ -13,12 +13,12 @@ constexpr double kLargestGap_s = 0.05;
 
 }  // namespace
 
-GyroPath::GyroPath(const ImuBatch& imu) : imu_(imu) {
+GyroPath::GyroPath(const ImuBatch& imu, const Eigen::Vector3d& bias_gyro) : imu_(imu), bias_gyro_(bias_gyro) {
   R_b0_bk_.push_back(Eigen::Quaterniond::Identity());
   gaps_.push_back(0);
   for (std::size_t i = 1; i < imu.size(); ++i) {
     const double dt = 1e-9 * static_cast<double>(imu[i].t_ns - imu[i - 1].t_ns);
-    R_b0_bk_.push_back((R_b0_bk_.back() * expRotation(0.5 * (imu[i].gyro + imu[i - 1].gyro) * dt)).normalized());
+    R_b0_bk_.push_back((R_b0_bk_.back() * turn(i, dt)).normalized());
     gaps_.push_back(gaps_.back() + (dt > kLargestGap_s || imu[i].bridged));
   }
 }
@@ -32,7 +32,11 @@ Eigen::Quaterniond GyroPath::at(std::int64_t t_ns) const {
   const std::size_t k = firstNotBefore(t_ns);
   if (k == 0) return R_b0_bk_.front();
   const double dt = 1e-9 * static_cast<double>(t_ns - imu_[k - 1].t_ns);
-  return R_b0_bk_[k - 1] * expRotation(0.5 * (imu_[k].gyro + imu_[k - 1].gyro) * dt);
+  return R_b0_bk_[k - 1] * turn(k, dt);
+}
+
+Eigen::Quaterniond GyroPath::turn(std::size_t k, double dt) const {
+  return expRotation((0.5 * (imu_[k].gyro + imu_[k - 1].gyro) - bias_gyro_) * dt);
 }
 
 std::size_t GyroPath::firstNotBefore(std::int64_t t_ns) const {

@@ -106,8 +106,8 @@ std::vector<TimedPair> timedPairs(const std::vector<FrameTracks>& frames, const 
   return pairs;
 }
 
-ClockFit::ClockFit(const std::vector<TimedPair>& pairs, const GyroPath& path, double readout_s, double width_rad)
-    : pairs_(pairs), path_(path), given_s_(readout_s), width_rad_(width_rad), overlap_(overlap(pairs)) {
+ClockFit::ClockFit(const std::vector<TimedPair>& pairs, const ImuBatch& imu, double readout_s, double width_rad)
+    : pairs_(pairs), imu_(imu), given_s_(readout_s), width_rad_(width_rad), overlap_(overlap(pairs)) {
   holdReadout();
 }
 
@@ -118,14 +118,13 @@ void ClockFit::holdReadout() {
 }
 
 EpipolarSystem ClockFit::at(double offset_s) {
-  turn(nanoseconds(offset_s));
   for (int steps = 0;; ++steps) {
-    EpipolarSystem system = epipolarSystem(turned_, bias_, width_rad_);
+    turn(nanoseconds(offset_s));
+    EpipolarSystem system = epipolarSystem(turned_, Eigen::Vector3d::Zero(), width_rad_);
     if (free_) addPrior(system);
     const Eigen::Vector4d change = solveLdlt(system.H, system.b);
     if (steps == kMostSteps || change.head<3>().norm() < kSettled_rad_s) return system;
     step(change);
-    if (free_) turn(nanoseconds(offset_s));
   }
 }
 
@@ -134,11 +133,13 @@ EpipolarSystem ClockFit::withoutGyro() {
   return epipolarSystem(turned_, Eigen::Vector3d::Zero(), width_rad_);
 }
 
+/// With the bias in the path: what it turns depends on how the body turns meanwhile, and on the rows' times.
 void ClockFit::turn(std::int64_t offset_ns) {
+  const GyroPath path(imu_, bias_);
   for (std::size_t i = 0; i < pairs_.size(); ++i) {
     const std::int64_t a_ns = pairs_[i].a_ns + offset_ns, b_ns = pairs_[i].b_ns + offset_ns;
-    turned_[i].R_a_b = path_.at(a_ns).conjugate() * path_.at(b_ns);
-    if (free_ || readout_s_ != 0) unroll(pairs_[i], {path_, a_ns}, {path_, b_ns}, readout_s_, free_, turned_[i]);
+    turned_[i].R_a_b = path.at(a_ns).conjugate() * path.at(b_ns);
+    if (free_ || readout_s_ != 0) unroll(pairs_[i], {path, a_ns}, {path, b_ns}, readout_s_, free_, turned_[i]);
   }
 }
 

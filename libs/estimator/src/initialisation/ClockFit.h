@@ -23,12 +23,12 @@ struct TimedPair {
 std::vector<TimedPair> timedPairs(const std::vector<FrameTracks>& frames, const GyroPath& path, const Rig& rig);
 
 /// How well a clock offset fits: the epipolar constraint of all pairs, their rays turned to the frames' times by the
-/// gyroscope. The bias, and the readout where it is free, are where the search has come to. Pairs and path must outlive
-/// it.
+/// gyroscope. The bias, and the readout where it is free, are where the search has come to. Pairs and samples must
+/// outlive it.
 class ClockFit {
  public:
   /// For a given readout; `width_rad` is that of the robust loss.
-  ClockFit(const std::vector<TimedPair>& pairs, const GyroPath& path, double readout_s, double width_rad);
+  ClockFit(const std::vector<TimedPair>& pairs, const ImuBatch& imu, double readout_s, double width_rad);
 
   /// From now on the readout is estimated as well.
   void freeReadout() { free_ = true; }
@@ -58,7 +58,7 @@ class ClockFit {
   void step(const Eigen::Vector4d& change);
 
   const std::vector<TimedPair>& pairs_;
-  const GyroPath& path_;
+  const ImuBatch& imu_;
   double given_s_, width_rad_, overlap_, readout_s_ = 0;
   bool free_ = false;
   std::vector<FramePair> turned_;

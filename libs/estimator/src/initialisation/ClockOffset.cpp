@@ -20,7 +20,7 @@ constexpr double kStep_s = kLargestClockOffset_s / kSteps;
 constexpr int kCoarse = 4;                 // steps at first, 20 ms: a fifth of the period of a hand that shakes
 constexpr double kLeastCertain_s = 0.025;  // the range is eight times as wide
 constexpr double kFineStep_s = 1e-3;       // at which the likelihood is summed up over the range
-constexpr double kMostSpread_s = 0.04;     // of the offset over the whole range; 0.058 where all are as likely
+constexpr double kMostSpread_s = 0.03;     // of the offset over the whole range; 0.058 where all are as likely
 constexpr double kLeastTurn_px = 0.3;      // a turn that moves points by less than tracks err shows no offset
 constexpr double kWidth_px = 2;            // of the robust loss
 constexpr std::size_t kLeastPairs = 10;
@@ -144,11 +144,10 @@ ClockOffset findClockOffset(const std::vector<FrameTracks>& frames, const ImuBat
   ClockOffset found;
   found.readout_s = rig.readout_s();
   if (imu.size() < 2) return found;
-  const GyroPath path(imu);
-  const std::vector<TimedPair> pairs = timedPairs(frames, path, rig);
+  const std::vector<TimedPair> pairs = timedPairs(frames, GyroPath(imu), rig);
   if (pairs.size() < kLeastPairs) return found;
   const double focal = rig.camera.meanFocal(), width_rad = kWidth_px / focal;
-  ClockFit fit(pairs, path, rig.readout_s(), width_rad);
+  ClockFit fit(pairs, imu, rig.readout_s(), width_rad);
   Grid grid(fit);
   const int place = grid.search();
   const auto rmsOf = [focal](const EpipolarSystem& system) { return focal * std::sqrt(system.sum / system.weights); };
@@ -161,7 +160,10 @@ ClockOffset findClockOffset(const std::vector<FrameTracks>& frames, const ImuBat
   found.bias_gyro = fit.bias();
   const double still_px = rmsOf(fit.withoutGyro()),
                turn_px = std::sqrt(std::max(0.0, still_px * still_px - found.rms_px * found.rms_px));
-  found.determined = range_sigma_s < kMostSpread_s && found.sigma_s < kLeastCertain_s && turn_px > kLeastTurn_px;
+  const bool bracketed = std::abs(found.offset_s) + std::max(found.sigma_s, range_sigma_s) <
+                         kLargestClockOffset_s;  // costs beyond may be smaller
+  found.determined =
+      bracketed && range_sigma_s < kMostSpread_s && found.sigma_s < kLeastCertain_s && turn_px > kLeastTurn_px;
   found.sigma_s = std::max(found.sigma_s, range_sigma_s);
   return found;
 }

@@ -42,7 +42,7 @@ TrackedFlight turningFlight(double gyro_bias, double noise_px) {
 }
 
 TEST(ClockOffset, IsFoundWhateverTheGyroBias) {
-  for (const double bias : {0.0, 0.05}) {
+  for (const double bias : {0.0, 0.05, 0.3}) {
     const TrackedFlight f = turningFlight(bias, 0.5);
     for (const double offset_s : {-0.083, -0.05, 0.0, 0.02, 0.071}) {
       const Span span = spanOf(f, offset_s);
@@ -58,17 +58,16 @@ TEST(ClockOffset, IsFoundWhateverTheGyroBias) {
 TEST(ClockOffset, TheCostOfAnOffsetIsTheSameFromWhereverTheSearchComes) {
   const TrackedFlight f = turningFlight(0.05, 0.5);
   const Span span = spanOf(f, 0);
-  const GyroPath path(span.imu);
-  const std::vector<TimedPair> pairs = timedPairs(span.frames, path, f.rig);
+  const std::vector<TimedPair> pairs = timedPairs(span.frames, GyroPath(span.imu), f.rig);
   const auto costAt = [&](const std::vector<double>& offsets_s) {
-    ClockFit fit(pairs, path, 0, 2 / f.rig.camera.meanFocal());
+    ClockFit fit(pairs, span.imu, 0, 2 / f.rig.camera.meanFocal());
     double cost = 0;
     for (const double offset_s : offsets_s) cost = fit.at(offset_s).cost;
     return cost;
   };
   const double cost = costAt({0.06});
-  EXPECT_NEAR(costAt({-0.1, 0.06}), cost, 1e-4 * cost);
-  EXPECT_NEAR(costAt({0.1, 0.06}), cost, 1e-4 * cost);
+  EXPECT_NEAR(costAt({-0.1, 0.06}), cost, 3e-4 * cost);
+  EXPECT_NEAR(costAt({0.1, 0.06}), cost, 3e-4 * cost);
 }
 
 TEST(ClockOffset, IsNotFoundBeyondItsRange) {
