@@ -64,8 +64,7 @@ class Tracking {
   Tracking(Recording& recording, const Configuration& configuration, OdometryResult& result,
            const std::function<bool()>& cancelled)
       : stage_(std::in_place, recording, configuration.tracking, result),
-        search_(
-            searchClock(*stage_, recording.rig(), configuration.estimator.calibration.time_offset_sigma_s, cancelled)) {
+        search_(searchOf(recording.rig(), configuration.estimator.calibration, cancelled)) {
     if (search_.offset_s == 0) {
       stage_->giveAgain(std::move(search_.frames));
       return;
@@ -84,6 +83,13 @@ class Tracking {
   const ClockSearch& search() const { return search_; }
 
  private:
+  ClockSearch searchOf(const Rig& rig, const CalibrationParams& calibration, const std::function<bool()>& cancelled) {
+    if (calibration.find_clock_offset) return searchClock(*stage_, rig, calibration.time_offset_sigma_s, cancelled);
+    ClockSearch as_stamped;
+    as_stamped.sigma_s = calibration.time_offset_sigma_s;
+    return as_stamped;
+  }
+
   std::optional<ShiftedRecording> shifted_;
   std::optional<TrackingStage> stage_;
   ClockSearch search_;
@@ -105,6 +111,7 @@ Configuration withClock(Configuration configuration, const ClockSearch& search) 
 
 /// Stages and map know the offset that remains after the stamps have been corrected; the result has the sum of both.
 void addClock(const ClockSearch& search, OdometryResult& result) {
+  result.clock_offset_s = search.offset_s;
   if (search.offset_s == 0) return;
   result.time_offset_s += search.offset_s;
   result.window_calibration.time_offset_s += search.offset_s;

@@ -15,6 +15,20 @@ constexpr double kScaleSigma = 0.15;  // of a start
 
 }  // namespace
 
+bool mayHaveWrongClock(const OdometryResult& result) {
+  return !result.cancelled && result.error.empty() && result.clock_offset_s != 0 &&
+         result.statistics.frames_with_pose == 0;
+}
+
+Configuration asStamped(Configuration configuration) {
+  configuration.estimator.calibration.find_clock_offset = false;
+  return configuration;
+}
+
+bool hasPoses(const OdometryResult& second, const OdometryResult& /*first*/) {
+  return !second.cancelled && second.statistics.frames_with_pose > 0;
+}
+
 bool lacksScale(const OdometryResult& result) {
   const OdometryStatistics& s = result.statistics;
   return !result.cancelled && result.error.empty() && s.frames_without_scale > 0 &&

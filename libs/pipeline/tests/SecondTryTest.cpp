@@ -24,6 +24,24 @@ OdometryResult refined(std::size_t poses) {
   return result;
 }
 
+TEST(SecondTry, StampsAreUsedAsTheyAreWhereNoPoseWasFoundWithCorrectedOnes) {
+  OdometryResult none = runWithPoses(0, 50, 0);
+  EXPECT_FALSE(mayHaveWrongClock(none)) << "they were not corrected";
+  none.clock_offset_s = -0.02;
+  EXPECT_TRUE(mayHaveWrongClock(none));
+  EXPECT_TRUE(hasPoses(runWithPoses(3, 40, 0), none));
+  EXPECT_FALSE(hasPoses(runWithPoses(0, 50, 0), none));
+  OdometryResult some = runWithPoses(5, 40, 0);
+  some.clock_offset_s = -0.02;
+  EXPECT_FALSE(mayHaveWrongClock(some));
+  none.cancelled = true;
+  EXPECT_FALSE(mayHaveWrongClock(none));
+  Configuration configuration;
+  EXPECT_FALSE(asStamped(configuration).estimator.calibration.find_clock_offset);
+  configuration.estimator.calibration.find_clock_offset = false;
+  EXPECT_EQ(writeConfiguration(asStamped({})), writeConfiguration(configuration)) << "nothing else";
+}
+
 TEST(SecondTry, IsWantedWhereTheScaleIsWhatIsMissing) {
   EXPECT_TRUE(lacksScale(runWithPoses(0, 50, 30)));
   EXPECT_TRUE(lacksScale(runWithPoses(20, 40, 30)));

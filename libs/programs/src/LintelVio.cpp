@@ -63,7 +63,10 @@ class LintelVio {
     costs_.once_ms.emplace_back("start of the program", processTimeMs());
     const auto start = std::chrono::steady_clock::now();
     OdometryResult result = process(*recording, configuration, stop);
-    if (configuration.refinement.enabled && lacksScale(result)) tryAgain(configuration, stop, result);
+    const std::string given = writeConfiguration(configuration);
+    if (mayHaveWrongClock(result)) tryAsStamped(stop, configuration, result);
+    if (configuration.refinement.enabled && lacksScale(result)) tryVagueStart(stop, configuration, result);
+    result.map.configuration = given;
     const double wall_s = costs_.wall_s =
         std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
     if (result.statistics.frames == 0 && !result.error.empty()) throw RecordingError(result.error);
@@ -242,22 +245,46 @@ class LintelVio {
     return result;
   }
 
-  /// Once more, from a start that is less sure of the scale.
-  void tryAgain(const Configuration& configuration, const StopSignals& stop, OdometryResult& result) {
-    if (!quiet_) err_ << kName << ": no start knows the scale well: once more, from one that knows it less well\n";
+  /// The stamps as they are, where no pose was found with corrected ones.
+  void tryAsStamped(const StopSignals& stop, Configuration& configuration, OdometryResult& result) {
+    const double offset_ms = 1000 * result.clock_offset_s;
+    const Configuration second = asStamped(configuration);
+    if (!tryAgain("no pose with the clocks corrected: once more with the stamps as they are", second, hasPoses, stop,
+                  result))
+      return;
+    configuration = second;
+    result.remarks.push_back(
+        formatted("clocks of images and IMU: %+.1f ms were found before the start, but no pose with them; the stamps "
+                  "are used as they are",
+                  offset_ms));
+  }
+
+  /// A start that is less sure of the scale.
+  void tryVagueStart(const StopSignals& stop, const Configuration& configuration, OdometryResult& result) {
+    if (!tryAgain("no start knows the scale well: once more, from one that knows it less well",
+                  secondTryOf(configuration), isBetter, stop, result))
+      return;
+    result.verdict = verdictOfSecondTry(result);
+  }
+
+  /// The recording once more; whether that is the better result, which then takes the place of the first.
+  bool tryAgain(const std::string& why, const Configuration& configuration,
+                const std::function<bool(const OdometryResult&, const OdometryResult&)>& is_better,
+                const StopSignals& stop, OdometryResult& result) {
+    if (!quiet_) err_ << kName << ": " << why << "\n";
     RunSeries series;
     std::swap(series, series_);
     checkpoint_.emplace(output_, checkpoint_s_);
     const auto recording = openRecording(input_, recording_params_);
-    OdometryResult second = process(*recording, secondTryOf(configuration), stop);
-    if (isBetter(second, result)) {
+    OdometryResult second = process(*recording, configuration, stop);
+    const bool better = is_better(second, result);
+    if (better) {
       result = std::move(second);
-      result.map.configuration = writeConfiguration(configuration);
-      result.verdict = verdictOfSecondTry(result);
     } else {
       std::swap(series, series_);
       result.cancelled = second.cancelled;
     }
+    return better;
   }
 
   /// Where it outlasts the program being killed.

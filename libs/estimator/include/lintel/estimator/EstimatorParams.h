@@ -50,6 +50,7 @@ struct CalibrationParams {
   bool refine_readout = true;  ///< of a rolling shutter
   bool refine_time_offset = true;
   bool refine_axes = true;        ///< of the IMU: scales and directions (ImuAxes.h)
+  bool find_clock_offset = true;  ///< before the start; false: the stamps are right to `time_offset_sigma_s`
   bool find_stamp_jitter = true;  ///< stamps that are off each by its own amount are counted as noise of the IMU
   double extrinsic_rotation_sigma_rad = 0.005;
   double extrinsic_translation_sigma_m = 0.005;
@@ -72,6 +73,7 @@ struct CalibrationParams {
     field("refine_readout", refine_readout);
     field("refine_time_offset", refine_time_offset);
     field("refine_axes", refine_axes);
+    field("find_clock_offset", find_clock_offset);
     field("find_stamp_jitter", find_stamp_jitter);
     field("extrinsic_rotation_sigma_rad", extrinsic_rotation_sigma_rad, Range{1e-9, 1});
     field("extrinsic_translation_sigma_m", extrinsic_translation_sigma_m, Range{1e-9, 10});

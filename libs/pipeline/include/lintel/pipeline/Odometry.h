@@ -78,6 +78,7 @@ struct OdometryResult {
   Rig rig;                                 ///< as refined
   CalibrationEstimate window_calibration;  ///< as the last window had it, before any batch refinement
   double time_offset_s = 0;
+  double clock_offset_s = 0;                    ///< the part of it that the stamps were corrected by before the start
   std::shared_ptr<const GrayImage> found_mask;  ///< FrontEnd::foundMask; null: nothing moves with the camera
   OdometryStatistics statistics;
   std::vector<std::string> remarks;        ///< what was corrected of the recording's own data, in words
