@@ -12,14 +12,17 @@ namespace lintel {
 
 namespace {
 
-/// Symmetric, and no correlation above 1 but for rounded numbers.
+/// Symmetric, and no correlation above 1 but for rounded numbers: small angles of a first pose come from large ones,
+/// whose rounding they keep.
 bool isPossible(const PoseCovariance& covariance) {
-  constexpr double kRounding = 1e-3;
+  constexpr double kRounding = 1e-3, kRoundingOfLargest = 1e-5;
+  const double largest[] = {covariance.diagonal().head<3>().maxCoeff(), covariance.diagonal().tail<3>().maxCoeff()};
   for (int i = 0; i < 6; ++i)
     for (int j = 0; j < i; ++j) {
-      const double most = std::sqrt(covariance(i, i)) * std::sqrt(covariance(j, j));
-      if (!(std::abs(covariance(i, j)) <= (1 + kRounding) * most)) return false;
-      if (!(std::abs(covariance(i, j) - covariance(j, i)) <= kRounding * most)) return false;
+      const double most = std::sqrt(covariance(i, i)) * std::sqrt(covariance(j, j)),
+                   rounding = kRounding * most + kRoundingOfLargest * std::sqrt(largest[i / 3] * largest[j / 3]);
+      if (!(std::abs(covariance(i, j)) <= most + rounding)) return false;
+      if (!(std::abs(covariance(i, j) - covariance(j, i)) <= rounding)) return false;
     }
   return true;
 }

@@ -106,6 +106,15 @@ TEST(Consistency, ReadsTriangleAndWholeMatrix) {
   for (int i = 0; i < 2; ++i) EXPECT_LT((a[i] - b[i]).norm(), 1e-12);
 }
 
+/// A first pose, whose heading is known by definition: in Euler's angles its variance is a difference of large ones.
+TEST(Consistency, RoundedCovariancesOfAFirstPoseAreRead) {
+  const test::TempFolder folder;
+  std::string row = "1.500000000";
+  for (int i = 0; i < 15; ++i) row += ",0";
+  row += ",5.770741098e-10,-1.566353242e-08,3.378416272e-07,4.029797615e-04,-9.149690515e-06,1.972832181e-04\n";
+  EXPECT_EQ(readCovariances(folder.write("c.csv", row), {{1'500'000'000, Pose()}}).size(), 1u);
+}
+
 TEST(Consistency, CovariancesOfAnotherTrajectoryAreRefused) {
   const test::TempFolder folder;
   std::string row = "1.500000000";
