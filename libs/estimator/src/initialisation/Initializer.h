@@ -9,6 +9,9 @@
 
 namespace lintel {
 
+/// The reason of a start that is refused for its accelerometer bias.
+inline constexpr char kBiasImplausible[] = "the accelerometer bias of the start is implausible";
+
 /// Turns a buffer of frames without states into a window. Moving start: gyro bias from epipolar geometry
 /// (GyroAlignment), velocity and gravity in closed form (GravityAlignment), full adjustment, and a check of what came
 /// out, its scale included. Static start: gravity from the accelerometer, bias from the gyroscope.

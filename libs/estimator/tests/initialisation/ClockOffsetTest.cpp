@@ -61,13 +61,14 @@ TEST(ClockOffset, TheCostOfAnOffsetIsTheSameFromWhereverTheSearchComes) {
   const std::vector<TimedPair> pairs = timedPairs(span.frames, GyroPath(span.imu), f.rig);
   const auto costAt = [&](const std::vector<double>& offsets_s) {
     ClockFit fit(pairs, span.imu, 0, 2 / f.rig.camera.meanFocal());
-    double cost = 0;
-    for (const double offset_s : offsets_s) cost = fit.at(offset_s).cost;
-    return cost;
+    EpipolarSystem system;
+    for (const double offset_s : offsets_s) system = fit.at(offset_s);
+    return system.cost / fit.variance(system);
   };
+  constexpr double kFarBelowOne = 0.02;  // likelihoods of offsets differ by one variance of the cost and more
   const double cost = costAt({0.06});
-  EXPECT_NEAR(costAt({-0.1, 0.06}), cost, 3e-4 * cost);
-  EXPECT_NEAR(costAt({0.1, 0.06}), cost, 3e-4 * cost);
+  EXPECT_NEAR(costAt({-0.1, 0.06}), cost, kFarBelowOne);
+  EXPECT_NEAR(costAt({0.1, 0.06}), cost, kFarBelowOne);
 }
 
 TEST(ClockOffset, IsNotFoundBeyondItsRange) {

@@ -56,7 +56,6 @@ enum class EstimatorStatus {
 
 /// The reason of a frame without a pose where all that a start lacks is its scale.
 inline constexpr char kScaleUnknown[] = "waiting for a motion that shows the scale";
-inline constexpr char kBiasImplausible[] = "the accelerometer bias of the start is implausible";
 
 /// Why the window was given up.
 enum class Failure {
