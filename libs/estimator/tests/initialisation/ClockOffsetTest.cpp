@@ -54,7 +54,8 @@ TEST(ClockOffset, IsFoundWhateverTheGyroBias) {
   }
 }
 
-/// What it turns depends on how the body turns meanwhile: taken as a constant it leaves residuals, which looked like 15 ms on a hand.
+/// What it turns depends on how the body turns meanwhile: taken as a constant it leaves residuals, which looked like 15
+/// ms on a hand.
 TEST(ClockOffset, ALargeGyroBiasLeavesNoResidual) {
   const TrackedFlight f = turningFlight(0.3, 0);
   ASSERT_GT(f.truth(0).bias_gyro.norm(), 0.3);
