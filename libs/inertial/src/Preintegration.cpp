@@ -103,8 +103,9 @@ void Preintegration::integrate(const ImuSample& s0, const ImuSample& s1) {
   accel_axes_jacobian_.topRows<3>() += dt * a_by_A;
   gyro_axes_jacobian_ = A * gyro_axes_jacobian_ + B.leftCols<3>() * bySymmetric(gyro_mean);
   Eigen::Matrix<double, 6, 1> variance;
-  const double gyro = s1.bridged ? kBridgedGyro : noise_.gyro_noise;
-  const double accel = s1.bridged ? kBridgedAccel : noise_.accel_noise;
+  const double gyro = std::max<double>({s1.bridged ? kBridgedGyro : noise_.gyro_noise, s0.gyro_open, s1.gyro_open});
+  const double accel =
+      std::max<double>({s1.bridged ? kBridgedAccel : noise_.accel_noise, s0.accel_open, s1.accel_open});
   variance << Eigen::Vector3d::Constant(gyro * gyro / dt), Eigen::Vector3d::Constant(accel * accel / dt);
   covariance_ = A * covariance_ * A.transpose() + B * variance.asDiagonal() * B.transpose();
   // White noise moves the position within a step on its own: of accel^2 dt^3 / 3 the term in B holds three quarters.

@@ -112,6 +112,16 @@ TEST(Preintegration, WhatWasNotMeasuredIsUncertain) {
   EXPECT_GT(std::sqrt(bridged.covariance()(3, 3)), 0.4);          // m/s
 }
 
+TEST(Preintegration, WhatIsBeyondTheRangeIsUncertain) {
+  ImuBatch samples = wavySamples(100);  // of 5 ms
+  samples[50].gyro_open = 0.5, samples[50].accel_open = 2;
+  Preintegration p({}, {});
+  p.append(samples);
+  EXPECT_NEAR(std::sqrt(p.covariance()(0, 0)), 0.5 * std::sqrt(0.01),
+              0.002);                                               // rad, from the sample before to the next
+  EXPECT_GT(std::sqrt(p.covariance()(3, 3)), 2 * std::sqrt(0.01));  // m/s
+}
+
 TEST(Preintegration, CorrelatedNoiseLeavesTheStartsAsItsCovarianceSays) {
   // of e(t) - e(0), <e(s) e(t)> = sigma^2 exp(-|t - s| / T), summed up over half-open steps of a four hundredth
   const double T = kAccelCorrelation_s, sigma = 0.03;

@@ -23,7 +23,8 @@ void encodeImu(const Preintegration& imu, ByteWriter& out) {
   out.f64(noise.gyro_noise), out.f64(noise.gyro_walk), out.f64(noise.accel_noise), out.f64(noise.accel_walk);
   out.u64(imu.samples().size());
   for (const ImuSample& s : imu.samples())
-    out.i64(s.t_ns), out.vec3(s.gyro), out.vec3(s.accel), out.u8(s.bridged ? 1 : 0);
+    out.i64(s.t_ns), out.vec3(s.gyro), out.vec3(s.accel),
+        out.u8(s.bridged || s.gyro_open > 0 || s.accel_open > 0 ? 1 : 0);
 }
 
 std::shared_ptr<const Preintegration> decodeImu(ByteReader& in) {

@@ -8,7 +8,8 @@ namespace {
 
 ImuSample interpolate(const ImuSample& a, const ImuSample& b, std::int64_t t_ns) {
   const double s = static_cast<double>(t_ns - a.t_ns) / static_cast<double>(b.t_ns - a.t_ns);
-  return {t_ns, a.gyro + s * (b.gyro - a.gyro), a.accel + s * (b.accel - a.accel), b.bridged};
+  return {t_ns,      a.gyro + s * (b.gyro - a.gyro),     a.accel + s * (b.accel - a.accel),
+          b.bridged, std::max(a.gyro_open, b.gyro_open), std::max(a.accel_open, b.accel_open)};
 }
 
 bool earlier(const ImuSample& sample, std::int64_t t_ns) { return sample.t_ns < t_ns; }

@@ -8,16 +8,27 @@ namespace lintel {
 /// From one to the next.
 void ImuValuesStream::handOn(bool at_end, const WarningSink& warn) {
   while (const std::optional<ImuSample> sample = held_.pop(at_end)) spikes_.push(*sample);
+  mend(at_end, warn);
   if (said_ || !held_.hasLooked()) return;
   said_ = true;
   if (!held_.remark().empty()) warn(Fault::Other, path() + ": " + held_.remark() + ": interpolated");
 }
 
+void ImuValuesStream::mend(bool at_end, const WarningSink& warn) {
+  std::string remark;
+  while (const std::optional<ImuSample> sample = spikes_.pop(at_end, remark)) {
+    if (!remark.empty())
+      warn(Fault::ImuSpike, path() + ": IMU sample at " + secondsText(sample->t_ns) + ": " + remark + ": replaced");
+    ends_.push(*sample);
+  }
+}
+
 std::optional<ImuSample> ImuValuesStream::pop(bool at_end, const WarningSink& warn) {
   std::string remark;
-  const std::optional<ImuSample> sample = spikes_.pop(at_end, remark);
+  const std::optional<ImuSample> sample = ends_.pop(at_end, remark);
   if (!remark.empty())
-    warn(Fault::ImuSpike, path() + ": IMU sample at " + secondsText(sample->t_ns) + ": " + remark + ": replaced");
+    warn(Fault::ImuRange, path() + ": " + remark + " (first at " + secondsText(sample->t_ns) +
+                              "), the end of its range: what is beyond is estimated; set a larger range");
   return sample;
 }
 

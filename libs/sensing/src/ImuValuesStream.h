@@ -2,13 +2,15 @@
 #pragma once
 
 #include "HeldValues.h"
+#include "RangeEnds.h"
 #include "ReadAhead.h"
 #include "SpikeFilter.h"
 #include "StreamFilter.h"
 
 namespace lintel {
 
-/// A stream whose IMU's values are mended where the recorder repeated or spoiled them (HeldValues, SpikeFilter).
+/// A stream whose IMU's values are mended where the recorder repeated or spoiled them, and where the sensor's range
+/// ends (HeldValues, SpikeFilter, RangeEnds).
 class ImuValuesStream final : public StreamFilter {
  public:
   using StreamFilter::StreamFilter;
@@ -17,11 +19,13 @@ class ImuValuesStream final : public StreamFilter {
 
  private:
   void handOn(bool at_end, const WarningSink& warn);
+  void mend(bool at_end, const WarningSink& warn);
   std::optional<ImuSample> pop(bool at_end, const WarningSink& warn);
 
   ReadAhead<ImuSample> ahead_;
   HeldValues held_;
   SpikeFilter spikes_;
+  RangeEnds ends_;
   bool said_ = false;
 };
 

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <vector>
 
+#include "ImuValue.h"
 #include "lintel/core/Formatted.h"
 
 namespace lintel {
@@ -17,8 +18,6 @@ constexpr double kTimes = 6;                         // what is usual: 6 standar
 constexpr double kAlike = 0.15, kNoise = 2;          // of the difference, times what is usual
 constexpr std::int64_t kFar_ns = 100'000'000;        // from the sample before to the one after: a drop-out
 
-double valueOf(const ImuSample& sample, int axis) { return axis < 3 ? sample.gyro[axis] : sample.accel[axis - 3]; }
-
 bool isZero(const ImuSample& sample) {
   return sample.gyro == Eigen::Vector3d::Zero() && sample.accel == Eigen::Vector3d::Zero();
 }
@@ -27,7 +26,7 @@ bool isZero(const ImuSample& sample) {
 
 /// By how much a value differs from the mean of its neighbours.
 double SpikeFilter::difference(std::size_t i, int axis) const {
-  return valueOf(samples_[i], axis) - 0.5 * (valueOf(samples_[i - 1], axis) + valueOf(samples_[i + 1], axis));
+  return imuValue(samples_[i], axis) - 0.5 * (imuValue(samples_[i - 1], axis) + imuValue(samples_[i + 1], axis));
 }
 
 /// A single wrong value changes the differences of both its neighbours by minus a half of its own.
@@ -55,7 +54,7 @@ std::string SpikeFilter::fault(std::size_t i) const {
   for (int axis = 0; axis < 6; ++axis) {
     if (!isSpike(i, axis)) continue;
     return formatted("%s %.3g %s stands out from those around it",
-                     axis < 3 ? "an angular rate of" : "an acceleration of", valueOf(samples_[i], axis),
+                     axis < 3 ? "an angular rate of" : "an acceleration of", imuValue(samples_[i], axis),
                      axis < 3 ? "rad/s" : "m/s^2");
   }
   return "";

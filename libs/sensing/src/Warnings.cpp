@@ -20,6 +20,8 @@ const char* nameOf(Fault fault) {
       return "IMU samples that are not finite";
     case Fault::ImuSpike:
       return "spikes of the IMU";
+    case Fault::ImuRange:
+      return "ends of the IMU's ranges";
     case Fault::CutLine:
       return "incomplete lines";
     case Fault::ImuGap:

@@ -17,6 +17,7 @@ enum class Fault {
   ImuStamp,
   ImuValue,
   ImuSpike,
+  ImuRange,
   CutLine,
   ImuGap,
   ImuBridged,

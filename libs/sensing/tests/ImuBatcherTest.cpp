@@ -45,6 +45,19 @@ TEST(ImuBatcherTest, InterpolatesBothEnds) {
   EXPECT_THAT(timesOf(imu.between(5 * kMs, 28 * kMs)), ElementsAre(5, 10, 20, 28));
 }
 
+TEST(ImuBatcherTest, InterpolatedEndsAreAsUncertainAsTheWorseSample) {
+  ImuBatcher imu([i = 0](std::int64_t) mutable -> std::optional<ImuSample> {
+    ImuSample sample{10 * i * kMs};
+    if (i == 1) sample.gyro_open = 0.1F, sample.accel_open = 2;
+    return i++ < 4 ? std::optional<ImuSample>(sample) : std::nullopt;
+  });
+  imu.before(5 * kMs);
+  const ImuBatch first = imu.between(5 * kMs, 15 * kMs), second = imu.between(15 * kMs, 25 * kMs);
+  for (const ImuSample& sample : first) EXPECT_EQ(sample.gyro_open, 0.1F) << sample.t_ns;
+  EXPECT_EQ(second.front().accel_open, 2);
+  EXPECT_EQ(second.back().accel_open, 0);
+}
+
 TEST(ImuBatcherTest, FramesCloserThanSamples) {
   ImuBatcher imu = batcherOf({0, 10, 20});
   imu.before(2 * kMs);

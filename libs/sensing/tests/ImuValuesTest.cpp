@@ -7,6 +7,8 @@
 #include <vector>
 
 #include "HeldValues.h"
+#include "ImuValuesStream.h"
+#include "RangeEnds.h"
 #include "SpikeFilter.h"
 
 namespace lintel {
@@ -173,6 +175,161 @@ TEST(SpikeFilter, WhatABodyDoesIsLeft) {
     int found = 0;
     withoutSpikes(in, &found);
     EXPECT_EQ(found, 0) << name;
+  }
+}
+
+constexpr double kRange = 2.18, kAccelRange = 19.61;  // 125 degrees/s and 2 g
+
+/// Turns and accelerations of up to 3 rad/s and 25 m/s^2, 2 and 3 times a second.
+Samples violent(std::size_t n, double noise = 0) {
+  Samples samples = motion(n, noise);
+  for (ImuSample& sample : samples) {
+    const double t_s = seconds(sample), grow = std::min(1.0, t_s);
+    sample.gyro.x() += grow * 3 * std::sin(12 * t_s);
+    sample.accel.z() += grow * 15 * std::sin(19 * t_s);
+  }
+  return samples;
+}
+
+Samples clipped(Samples samples) {
+  for (ImuSample& sample : samples) {
+    sample.gyro = sample.gyro.cwiseMax(-kRange).cwiseMin(kRange);
+    sample.accel = sample.accel.cwiseMax(-kAccelRange).cwiseMin(kAccelRange);
+  }
+  return samples;
+}
+
+Samples withEnds(const Samples& samples, std::string* remarks) {
+  RangeEnds ends;
+  Samples out;
+  std::string remark;
+  const auto take = [&](bool at_end) {
+    while (const auto next = ends.pop(at_end, remark)) {
+      out.push_back(*next);
+      *remarks += remark + (remark.empty() ? "" : "\n");
+      remark.clear();
+    }
+  };
+  for (const ImuSample& sample : samples) {
+    ends.push(sample);
+    take(false);
+  }
+  take(true);
+  return out;
+}
+
+TEST(RangeEnds, WhatIsBeyondTheRangeIsReplacedAndSaidToBeUncertain) {
+  const Samples whole = violent(1000), in = clipped(whole);
+  std::string remarks;
+  const Samples out = withEnds(in, &remarks);
+  ASSERT_EQ(out.size(), in.size());
+  EXPECT_EQ(remarks,
+            "the accelerometer's values along its z axis end at 19.6 m/s^2\n"
+            "the gyroscope's rates along its x axis end at -2.18 rad/s\n"
+            "the gyroscope's rates along its x axis end at 2.18 rad/s\n");
+  double before_gyro = 0, after_gyro = 0, before_accel = 0, after_accel = 0;
+  for (std::size_t i = 0; i < in.size(); ++i) {
+    EXPECT_EQ(out[i].t_ns, in[i].t_ns);
+    if (i > 990) continue;  // the recording ends with a run
+    EXPECT_EQ(out[i].gyro_open > 0, out[i].gyro != in[i].gyro) << i;
+    EXPECT_EQ(out[i].accel_open > 0, out[i].accel != in[i].accel) << i;
+    if (i < 300) continue;  // until then the ends show
+    before_gyro += (in[i].gyro - whole[i].gyro).squaredNorm(),
+        after_gyro += (out[i].gyro - whole[i].gyro).squaredNorm();
+    before_accel += (in[i].accel - whole[i].accel).squaredNorm();
+    after_accel += (out[i].accel - whole[i].accel).squaredNorm();
+  }
+  EXPECT_LT(std::sqrt(after_gyro / before_gyro), 0.3);
+  EXPECT_LT(std::sqrt(after_accel / before_accel), 0.3);
+}
+
+/// The integral's error is less than three of the standard deviations that the densities give.
+TEST(RangeEnds, TheUncertaintyCoversTheError) {
+  const Samples whole = violent(1000, 0.1), in = clipped(whole);
+  std::string remarks;
+  const Samples out = withEnds(in, &remarks);
+  double error = 0, variance = 0;
+  int runs = 0;
+  for (std::size_t i = 300; i < in.size(); ++i) {
+    if (out[i].gyro_open == 0) {
+      if (variance > 0) {
+        EXPECT_LT(std::abs(error), 3 * std::sqrt(variance)) << i;
+        ++runs;
+      }
+      error = variance = 0;
+      continue;
+    }
+    error += 0.005 * (out[i].gyro.x() - whole[i].gyro.x());
+    variance += 0.005 * std::pow(out[i].gyro_open, 2);
+  }
+  EXPECT_GE(runs, 5);
+}
+
+/// A recording without images.
+class SampleStream final : public SensorStream {
+ public:
+  explicit SampleStream(Samples samples) : samples_(std::move(samples)) {}
+  const Rig& rig() const override { return rig_; }
+  const std::string& path() const override { return path_; }
+  std::size_t countFrames(const RecordingParams&) const override { return 0; }
+  std::optional<FrameRef> nextFrame(const WarningSink&) override { return std::nullopt; }
+  std::optional<ImuSample> nextImu(std::int64_t, const WarningSink&) override {
+    return next_ < samples_.size() ? std::optional<ImuSample>(samples_[next_++]) : std::nullopt;
+  }
+
+ private:
+  Rig rig_;
+  std::string path_ = "flight";
+  Samples samples_;
+  std::size_t next_ = 0;
+};
+
+TEST(ImuValuesStream, ARangeThatIsTooSmallIsSaidOnce) {
+  ImuValuesStream stream(std::make_unique<SampleStream>(clipped(violent(1000))));
+  std::vector<std::string> warnings;
+  std::size_t samples = 0, open = 0;
+  const auto warn = [&](Fault, std::string text) { warnings.push_back(std::move(text)); };
+  while (const auto sample = stream.nextImu(0, warn)) ++samples, open += sample->gyro_open > 0 ? 1 : 0;
+  EXPECT_EQ(samples, 1000U);
+  EXPECT_GT(open, 100U);
+  ASSERT_EQ(warnings.size(), 3U);
+  EXPECT_EQ(
+      warnings[1],
+      "flight: the accelerometer's values along its z axis end at 19.6 m/s^2 (first at 0.720000000 s), the end of "
+      "its range: what is beyond is estimated; set a larger range");
+}
+
+TEST(RangeEnds, ALongTimeAtTheEndIsNotGuessed) {
+  Samples in = motion(600, 0.05);
+  for (std::size_t i = 200; i < 300; ++i) in[i].gyro.z() = -kRange;
+  std::string remarks;
+  const Samples out = withEnds(in, &remarks);
+  EXPECT_EQ(remarks, "the gyroscope's rates along its z axis end at -2.18 rad/s\n");
+  for (std::size_t i = 0; i < in.size(); ++i) {
+    const bool at_end = i >= 200 && i < 300;
+    EXPECT_EQ(out[i].gyro, in[i].gyro);
+    EXPECT_EQ(out[i].gyro_open > 0.1, at_end) << i;
+  }
+}
+
+TEST(RangeEnds, MotionWithinTheRangeIsLeft) {
+  Samples coarse = violent(4000, 0.05), frozen = violent(1000), still = motion(1000), units = violent(1000);
+  for (ImuSample& sample : coarse) {  // steps of a sensor of 12 bits: the peaks of the sines are flat for some samples
+    sample.gyro = 0.02 * (sample.gyro / 0.02).array().round();
+    sample.accel = 0.1 * (sample.accel / 0.1).array().round();
+  }
+  for (std::size_t i = 0; i < 1000; ++i)  // a recorder that repeats samples
+    if (i % 3 != 0) frozen[i].gyro = frozen[i - 1].gyro, frozen[i].accel = frozen[i - 1].accel;
+  for (ImuSample& sample : still) sample.gyro.setZero(), sample.accel = {0, 0, 9.81};
+  const std::pair<const char*, const Samples&> motions[] = {
+      {"coarse", coarse}, {"repeated", frozen}, {"still", still}, {"a few", Samples(units.begin(), units.begin() + 3)}};
+  for (const auto& [name, in] : motions) {
+    std::string remarks;
+    const Samples out = withEnds(in, &remarks);
+    EXPECT_EQ(remarks, "") << name;
+    ASSERT_EQ(out.size(), in.size()) << name;
+    for (std::size_t i = 0; i < in.size(); ++i)
+      EXPECT_TRUE(out[i].gyro == in[i].gyro && out[i].accel == in[i].accel && out[i].gyro_open == 0) << name << i;
   }
 }
 
