@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "StabilisedVideo.h"
 #include "TurnFault.h"
 #include "lintel/core/Formatted.h"
 #include "lintel/core/Quantiles.h"
@@ -153,15 +154,21 @@ std::string TurnCheck::fault(Suspicion suspicion, double corrected_s) const {
     return "the gyroscope shows no turn at all while the images turn: check that its values are recorded";
   if (here.missed < kNoiseMisses) return faultOf(here, R_b_c_, suspicion);
   const bool alone = suspicion == Suspicion::kNone;
-  if (alone && here.missed <= kLargestMissed) return faultOf(here, R_b_c_, suspicion);
+  const auto orStabilised = [&](const std::string& fault) {
+    if (alone && fault.empty()) return fault;
+    const std::string stabilised = stabilisationFault(GyroPath(imu_), R_b_c_, turns_);
+    return stabilised.empty() ? fault : stabilised;
+  };
+  if (alone && here.missed <= kLargestMissed) return orStabilised(faultOf(here, R_b_c_, suspicion));
   const TurnFit best = bestFit();
   const bool clocks = std::abs(best.offset_s) > kSearchedBefore_s && best.missed < kClearlyLess * here.missed;
-  if (!clocks && here.missed < (alone ? kUnrelatedMisses : kLargestMissed)) return faultOf(here, R_b_c_, suspicion);
+  if (!clocks && here.missed < (alone ? kUnrelatedMisses : kLargestMissed))
+    return orStabilised(faultOf(here, R_b_c_, suspicion));
   if (!clocks || best.missed > kLargestMissed) {
-    return formatted(
+    return orStabilised(formatted(
         "images and gyroscope do not turn together (%.0f %% of the images' turns are not in it): check that both "
         "are of the same recording, their stamps (unit, rate, order), and the gyroscope's axes and unit",
-        std::min(100.0, 100 * here.missed));
+        std::min(100.0, 100 * here.missed)));
   }
   const std::string text =
       formatted("the clocks of images and IMU differ: an image with stamp t shows the world at t %+.2f s of the IMU",

@@ -16,7 +16,7 @@ namespace {
 
 constexpr double kDegrees = 180 / 3.14159265358979323846;
 constexpr double kLargestSigma = 0.1;         // of an entry of M: 6 degrees, 10 %
-constexpr double kSignificant = 4;            // standard deviations
+constexpr double kSignificantTurn = 4;        // standard deviations
 constexpr double kLargestTurned_deg = 5;      // a calibration that is only roughly known is off by 3
 constexpr double kMountedOtherwise_deg = 20;  // beyond any calibration, and any error of the images' turns
 constexpr double kSameTurn_deg = 15;          // two rotations that mean the same cause
@@ -110,17 +110,17 @@ std::string faultOf(const TurnFit& fit, const Eigen::Quaterniond& R_b_c, Suspici
            (columns.empty() ? "" : "; x, y, z seem to be its columns " + columns);
   }
   const double largest_deg = suspicion == Suspicion::kNone ? kMountedOtherwise_deg : kLargestTurned_deg;
-  if (kDegrees * (Eigen::AngleAxisd(Q).angle() - kSignificant * sigma) > largest_deg) return rotationFault(Q, R);
+  if (kDegrees * (Eigen::AngleAxisd(Q).angle() - kSignificantTurn * sigma) > largest_deg) return rotationFault(Q, R);
   if (suspicion == Suspicion::kNone) return {};
   const double focal = std::sqrt(std::abs(gain.x() * gain.y())) / gain.z();
-  if (std::abs(std::log(focal)) > std::log(kLargestScale) + kSignificant * sigma) {
+  if (std::abs(std::log(focal)) > std::log(kLargestScale) + kSignificantTurn * sigma) {
     return formatted(
         "the focal length (or the distortion) seems to be wrong, as if it were %.0f %% too %s: turns about "
         "the image's axes come out as %.2f times those "
         "about the viewing axis",
         100 * std::abs(1 / focal - 1), focal < 1 ? "long" : "short", focal);
   }
-  if (std::abs(std::log(scale)) > std::log(kLargestScale) + kSignificant * sigma) return scaleFault(scale);
+  if (std::abs(std::log(scale)) > std::log(kLargestScale) + kSignificantTurn * sigma) return scaleFault(scale);
   return {};
 }
 

@@ -33,7 +33,12 @@ struct Flight {
   double imu_time = 1;                ///< the rate at which the IMU's flight goes on
   Eigen::Quaterniond R_b_c = kR_b_c;  ///< as the calibration has it
   double rate = 1;
+  double shake = 0, shown = 1;  ///< of a camera in a hand [rad/s], and how much of it the images show
 };
+
+Eigen::Vector3d shakeAt(double t_s) {
+  return {std::sin(9 * t_s), std::cos(11 * t_s + 1), 0.7 * std::sin(13 * t_s + 2)};
+}
 
 /// Fifteen seconds at 20 Hz; every tenth turn is an outlier.
 TurnCheck checkOf(const Flight& flight) {
@@ -45,7 +50,8 @@ TurnCheck checkOf(const Flight& flight) {
       ImuSample sample;
       sample.t_ns = 50'000'000LL * (frame - 1) + 5'000'000LL * i;
       const double at_s = flight.imu_time * (1e-9 * static_cast<double>(sample.t_ns) + flight.clock_s);
-      sample.gyro = flight.gyro(flight.rate * rateAt(at_s)) + Eigen::Vector3d(0.02, -0.01, 0.03);
+      sample.gyro =
+          flight.gyro(flight.rate * rateAt(at_s) + flight.shake * shakeAt(at_s)) + Eigen::Vector3d(0.02, -0.01, 0.03);
       imu.push_back(sample);
     }
     CameraTurn turn;
@@ -53,7 +59,8 @@ TurnCheck checkOf(const Flight& flight) {
     turn.to_ns = 50'000'000LL * frame;
     const Eigen::Vector3d noise =
         2e-4 * Eigen::Vector3d(std::sin(12.9 * frame), std::sin(78.2 * frame), std::sin(37.7 * frame));
-    const Eigen::Vector3d true_turn = kR_b_c.conjugate() * (0.05 * flight.rate * rateAt(t_s - 0.025));
+    const Eigen::Vector3d rate = flight.rate * rateAt(t_s - 0.025) + flight.shown * flight.shake * shakeAt(t_s - 0.025);
+    const Eigen::Vector3d true_turn = kR_b_c.conjugate() * (0.05 * rate);
     turn.rotation = frame % 10 == 0 ? Eigen::Vector3d(0.1, -0.2, 0.1) : Eigen::Vector3d(flight.seen(true_turn) + noise);
     turn.sigma.setConstant(3e-4);
     check.add(imu, turn);
@@ -129,6 +136,28 @@ TEST(TurnCheck, UnitsAndFocalLengthAreNamed) {
   EXPECT_THAT(checkOf(withGyro(3 * Eigen::Matrix3d::Identity())).fault(Suspicion::kSome), HasSubstr("unit"));
   EXPECT_THAT(checkOf(withImages(1 / 1.3, 1 / 1.3, 1)).fault(Suspicion::kSome), HasSubstr("30 % too long"));
   EXPECT_THAT(checkOf(withImages(1.3, 1.3, 1)).fault(Suspicion::kSome), HasSubstr("too short"));
+}
+
+TEST(TurnCheck, StabilisedImagesAreNamed) {
+  for (const double shown : {0.1, 0.4}) {
+    Flight flight;
+    flight.shake = 0.5, flight.shown = shown;
+    EXPECT_THAT(checkOf(flight).fault(Suspicion::kSome), HasSubstr("stabilised")) << shown;
+    flight.clock_s = 0.06;
+    EXPECT_THAT(checkOf(flight).fault(Suspicion::kSome), HasSubstr("stabilised")) << shown;
+  }
+}
+
+TEST(TurnCheck, AShakenCameraIsNotStabilised) {
+  Flight shaken, late, long_lens;
+  shaken.shake = late.shake = long_lens.shake = 0.5;
+  late.clock_s = 0.08;
+  long_lens.seen = [](const Eigen::Vector3d& turn) {
+    return Eigen::Vector3d(0.6 * turn.x(), 0.6 * turn.y(), turn.z());
+  };
+  for (const Flight& flight : {shaken, late, long_lens})
+    for (const Suspicion suspicion : {Suspicion::kNone, Suspicion::kSome})
+      EXPECT_THAT(checkOf(flight).fault(suspicion), Not(HasSubstr("stabilised")));
 }
 
 TEST(TurnCheck, AGyroscopeWithoutTurnsIsNamed) {

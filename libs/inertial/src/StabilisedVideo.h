@@ -1,0 +1,19 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <Eigen/Geometry>
+#include <string>
+#include <vector>
+
+#include "lintel/core/CameraTurn.h"
+#include "lintel/inertial/GyroPath.h"
+
+namespace lintel {
+
+/// Whether the images were turned so that they do not shake, as telephones do with films: over seconds they turn as the
+/// gyroscope does, within tenths of a second less. In words; empty when not, or when it cannot be said. Where clocks
+/// that differ by up to 0.1 s explain the turns as well, they are taken to.
+std::string stabilisationFault(const GyroPath& path, const Eigen::Quaterniond& R_b_c,
+                               const std::vector<CameraTurn>& turns);
+
+}  // namespace lintel
