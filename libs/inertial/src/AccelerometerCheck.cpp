@@ -115,8 +115,11 @@ std::string AccelerometerCheck::sizeFault() const {
   if (sizes_.empty()) return {};
   if ((highest_ - lowest_).maxCoeff() < kSilent && turned_rad_ > kTurned_rad)
     return "the accelerometer's values do not change although the IMU turns: check that they are recorded";
-  const double seen = gravity();
-  if (std::abs(seen / gravity_m_s2_ - 1) < kSizeTolerance) return {};
+  // Where motion is violent, means over a second hold some of it; means over half a second differ from those over five
+  // by about as much.
+  const double motion2 = compared_ >= kLeastCompared ? misfits_[0] / compared_ : 0;
+  const double seen = gravity(), most = std::sqrt(gravity_m_s2_ * gravity_m_s2_ + motion2);
+  if (seen > (1 - kSizeTolerance) * gravity_m_s2_ && seen < (1 + kSizeTolerance) * most) return {};
   std::string fault = formatted("the accelerometer shows %.2f m/s^2 where gravity is %.2f", seen, gravity_m_s2_);
   if (std::abs(seen - 1) < kSizeTolerance)
     fault += ": its values are in g, not in m/s^2";

@@ -50,6 +50,20 @@ TEST(AccelerometerCheck, UnitAndMissingGravityAreNamed) {
             std::string::npos);
 }
 
+TEST(AccelerometerCheck, ViolentMotionIsNoWrongUnit) {
+  double t_s = 0;
+  const auto racing = [&](const Eigen::Vector3d& f) {
+    t_s += 0.005;
+    return Eigen::Vector3d(f.x() + 18 * std::sin(2.5 * t_s), f.y() + 18 * std::cos(2.2 * t_s), f.z());
+  };
+  const AccelerometerCheck check = checkOf(racing);
+  EXPECT_GT(check.gravity(), 1.2 * 9.81);
+  EXPECT_EQ(check.sizeFault(), "");
+  t_s = 0;
+  const AccelerometerCheck in_g = checkOf([&](const Eigen::Vector3d& f) { return Eigen::Vector3d(racing(f) / 9.81); });
+  EXPECT_NE(in_g.sizeFault(), "");
+}
+
 TEST(AccelerometerCheck, GravityIsThatOfThePlace) {
   const auto onMars = [](const Eigen::Vector3d& f) { return Eigen::Vector3d(3.71 / 9.81 * f); };
   EXPECT_NE(checkOf(onMars).sizeFault().find("where gravity is 9.81"), std::string::npos);

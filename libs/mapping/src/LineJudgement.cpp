@@ -24,9 +24,9 @@ LineJudgement judgeMapLine(const MapParams& params, const KeyframeCameras& camer
   const auto [from, to] = result.stretch.value_or(std::make_pair(0.0, 0.0));
   result.sigma_direction_rad = line.estimate.sigmaDirection();
   result.sigma_distance_m = std::max(line.estimate.sigmaPosition(from), line.estimate.sigmaPosition(to));
-  const bool known =
-      result.sigma_direction_rad <= params.max_sigma_direction_rad &&
-      result.sigma_distance_m <= std::min(params.max_sigma_m, params.max_relative_sigma * line.distance_m);
+  const double most_m = std::min(std::max(params.max_sigma_m, params.max_far_sigma * line.distance_m),
+                                 params.max_relative_sigma * line.distance_m);
+  const bool known = result.sigma_direction_rad <= params.max_sigma_direction_rad && result.sigma_distance_m <= most_m;
   result.state = known ? LineState::kKnown : LineState::kDegenerate;
   return result;
 }

@@ -15,7 +15,9 @@ namespace {
 // against the estimate's, or an accelerometer that is not what it is taken for, makes it seem so.
 constexpr std::int64_t kSpan_ns = 5'000'000'000;
 constexpr double kLargestAcceleration = 3;  // [m/s^2]
-constexpr double kLongLever_m = 2;          // longer than what holds a camera and its IMU
+// Cars and racing drones gain more: they are believed where all keyframes' images and the IMU agree with it.
+constexpr double kLargestConfirmed = 20;
+constexpr double kLongLever_m = 2;  // longer than what holds a camera and its IMU
 constexpr double kLeastShareWithPose = 0.5;
 
 // How far the estimated calibration may go from the given one: some times what a rough calibration is wrong by (focal
@@ -135,7 +137,8 @@ std::string RunCheck::symptom(const OdometryStatistics& s, const Rig& estimated,
   const double after_first = static_cast<double>(s.last_frame_ns - s.first_frame_ns) * 1e-9 - s.first_start_s;
   const double all = static_cast<double>(s.last_frame_ns - s.first_frame_ns) * 1e-9;
   const double expected = s.first_start_s < 0 || all <= 0 ? 0 : static_cast<double>(s.frames) * after_first / all;
-  if (!(largest_acceleration_ < kLargestAcceleration)) {
+  const bool confirmed = refinement.accepted && refinement.imu_after < kLargestRefinedError;
+  if (!(largest_acceleration_ < (confirmed ? kLargestConfirmed : kLargestAcceleration))) {
     return formatted("the estimate diverged: it gained %.0f m/s within 5 s", 5 * largest_acceleration_);
   }
   if (!divergence_.empty()) return divergence_;

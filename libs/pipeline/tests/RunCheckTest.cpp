@@ -82,6 +82,19 @@ TEST(RunCheck, ADivergedRunIsNoGoodOne) {
   EXPECT_NE(verdictOf(9.81, std::nan("")), "");
 }
 
+TEST(RunCheck, AFastVehicleIsBelievedWhereTheRefinementConfirmsIt) {
+  RefinementReport refinement;
+  refinement.accepted = true, refinement.imu_after = 0.4;
+  const auto verdict = [&](double acceleration) {
+    return verdictOf(9.81, acceleration, 0, 1, givenRig(), 0, 100, refinement);
+  };
+  EXPECT_EQ(verdict(8), "") << "a car that brakes";
+  EXPECT_NE(verdict(25).find("diverged"), std::string::npos);
+  EXPECT_NE(verdict(std::nan("")), "");
+  refinement.imu_after = 1.5;
+  EXPECT_NE(verdict(8).find("diverged"), std::string::npos) << "the IMU contradicts it";
+}
+
 TEST(RunCheck, AFailureWithoutDataIsNoDivergence) {
   for (const Failure failure : {Failure::kInterrupted, Failure::kWrongStart, Failure::kDiverged}) {
     RunCheck check{givenRig()};

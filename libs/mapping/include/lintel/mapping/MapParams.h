@@ -72,8 +72,9 @@ struct MapParams {
   double view_max_error_px = 3.0;  ///< a view farther off is an outlier
   double min_inlier_share = 0.6;   ///< of a line's views
   double max_sigma_direction_rad = 0.10;
-  double max_sigma_m = 0.03;         ///< of a segment's ends, across it, and
-  double max_relative_sigma = 0.02;  ///< the same relative to the distance it was seen from
+  double max_sigma_m = 0.03;         ///< of a segment's ends, across it, or
+  double max_far_sigma = 0.003;      ///< relative to the distance it was seen from, where that is more, and
+  double max_relative_sigma = 0.02;  ///< the same where that is less
   double point_max_relative_sigma = 0.20;
   double coverage = 0.2;  ///< a piece of a line is drawn when this share of the views that would see it (and two) do
   MergeParams merge;
@@ -93,6 +94,7 @@ struct MapParams {
     field("min_inlier_share", min_inlier_share, Range{0, 1});
     field("max_sigma_direction_rad", max_sigma_direction_rad, Range{0.0001, 10});
     field("max_sigma_m", max_sigma_m, Range{1e-6, 1000});
+    field("max_far_sigma", max_far_sigma, Range{0, 100});
     field("max_relative_sigma", max_relative_sigma, Range{1e-6, 100});
     field("point_max_relative_sigma", point_max_relative_sigma, Range{1e-6, 100});
     field("coverage", coverage, Range{0, 1});
