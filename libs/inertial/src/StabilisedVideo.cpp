@@ -108,7 +108,8 @@ std::string stabilisationFault(const GyroPath& path, const Eigen::Quaterniond& R
   if (!(best.fast + kSure * best.sigma_fast < kLess * best.slow)) return {};
   return formatted(
       "the images seem to be stabilised: over seconds they turn as the gyroscope does (%.2f times as much), within "
-      "tenths of a second less (%.2f times): record without image stabilisation",
+      "tenths of a second less (%.2f times): record without image stabilisation, and without a gimbal between camera "
+      "and IMU",
       best.slow, best.fast);
 }
 
