@@ -23,6 +23,7 @@ constexpr double kTurned_rad = 1;       // by which gravity must have moved in t
 // Squared deviations with the right axes come from motion; with wrong ones a tilt of 10 degrees adds 3 (m/s^2)^2.
 constexpr double kClearlyBetter = 1.5;
 constexpr int kLeastCompared = 20;
+constexpr std::size_t kLeastSpans = 2;
 
 /// A way in which the axes may be mixed up: axis i of the body shows sign[i] times what the file's column[i] has. All
 /// signs changed is the same again.
@@ -98,6 +99,7 @@ void AccelerometerCheck::closeSpan() {
                           sign[2] * m.block<3, 1>(6, column[2]));
       mean += turned.back() / static_cast<double>(means_.size());
     }
+    if (k == 0) span_sizes_.push_back(mean.norm());
     for (const Eigen::Vector3d& f : turned) misfits_[k] += (f - mean).squaredNorm();
   }
   compared_ += static_cast<int>(means_.size());
@@ -115,11 +117,12 @@ std::string AccelerometerCheck::sizeFault() const {
   if (sizes_.empty()) return {};
   if ((highest_ - lowest_).maxCoeff() < kSilent && turned_rad_ > kTurned_rad)
     return "the accelerometer's values do not change although the IMU turns: check that they are recorded";
-  // Where motion is violent, means over a second hold some of it; means over half a second differ from those over five
-  // by about as much.
-  const double motion2 = compared_ >= kLeastCompared ? misfits_[0] / compared_ : 0;
-  const double seen = gravity(), most = std::sqrt(gravity_m_s2_ * gravity_m_s2_ + motion2);
-  if (seen > (1 - kSizeTolerance) * gravity_m_s2_ && seen < (1 + kSizeTolerance) * most) return {};
+  const auto isGravity = [&](double size) { return std::abs(size / gravity_m_s2_ - 1) < kSizeTolerance; };
+  const double seen = gravity();
+  if (isGravity(seen)) return {};
+  // Means over a second hold some of a violent motion, those over five hardly any.
+  std::vector<double> sizes = span_sizes_;
+  if (seen > gravity_m_s2_ && sizes.size() >= kLeastSpans && isGravity(median(sizes))) return {};
   std::string fault = formatted("the accelerometer shows %.2f m/s^2 where gravity is %.2f", seen, gravity_m_s2_);
   if (std::abs(seen - 1) < kSizeTolerance)
     fault += ": its values are in g, not in m/s^2";

@@ -6,14 +6,14 @@
 #include <vector>
 
 #include "lintel/core/CameraTurn.h"
-#include "lintel/inertial/GyroPath.h"
+#include "lintel/core/Frame.h"
 
 namespace lintel {
 
 /// Whether the images were turned so that they do not shake, as telephones do with films: over seconds they turn as the
-/// gyroscope does, within tenths of a second less. In words; empty when not, or when it cannot be said. Where clocks
-/// that differ by up to 0.1 s explain the turns as well, they are taken to.
-std::string stabilisationFault(const GyroPath& path, const Eigen::Quaterniond& R_b_c,
+/// gyroscope does, within tenths of a second less. In words; empty when not, where clocks that differ by up to 0.1 s
+/// explain the turns as well, and where the gyroscope's noise would make it seem so. Samples ascend in time.
+std::string stabilisationFault(const ImuBatch& imu, const Eigen::Quaterniond& R_b_c,
                                const std::vector<CameraTurn>& turns);
 
 }  // namespace lintel

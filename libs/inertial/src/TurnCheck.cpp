@@ -156,7 +156,7 @@ std::string TurnCheck::fault(Suspicion suspicion, double corrected_s) const {
   const bool alone = suspicion == Suspicion::kNone;
   const auto orStabilised = [&](const std::string& fault) {
     if (alone && fault.empty()) return fault;
-    const std::string stabilised = stabilisationFault(GyroPath(imu_), R_b_c_, turns_);
+    const std::string stabilised = stabilisationFault(imu_, R_b_c_, turns_);
     return stabilised.empty() ? fault : stabilised;
   };
   if (alone && here.missed <= kLargestMissed) return orStabilised(faultOf(here, R_b_c_, suspicion));

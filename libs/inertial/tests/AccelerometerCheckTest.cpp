@@ -59,9 +59,11 @@ TEST(AccelerometerCheck, ViolentMotionIsNoWrongUnit) {
   const AccelerometerCheck check = checkOf(racing);
   EXPECT_GT(check.gravity(), 1.2 * 9.81);
   EXPECT_EQ(check.sizeFault(), "");
-  t_s = 0;
-  const AccelerometerCheck in_g = checkOf([&](const Eigen::Vector3d& f) { return Eigen::Vector3d(racing(f) / 9.81); });
-  EXPECT_NE(in_g.sizeFault(), "");
+  for (const double unit : {1 / 9.81, 1.5, 3.28, 100.0}) {
+    t_s = 0;
+    const auto wrong = [&](const Eigen::Vector3d& f) { return Eigen::Vector3d(unit * racing(f)); };
+    EXPECT_NE(checkOf(wrong).sizeFault(), "") << unit;
+  }
 }
 
 TEST(AccelerometerCheck, GravityIsThatOfThePlace) {

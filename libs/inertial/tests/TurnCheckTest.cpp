@@ -148,18 +148,6 @@ TEST(TurnCheck, StabilisedImagesAreNamed) {
   }
 }
 
-TEST(TurnCheck, AShakenCameraIsNotStabilised) {
-  Flight shaken, late, long_lens;
-  shaken.shake = late.shake = long_lens.shake = 0.5;
-  late.clock_s = 0.08;
-  long_lens.seen = [](const Eigen::Vector3d& turn) {
-    return Eigen::Vector3d(0.6 * turn.x(), 0.6 * turn.y(), turn.z());
-  };
-  for (const Flight& flight : {shaken, late, long_lens})
-    for (const Suspicion suspicion : {Suspicion::kNone, Suspicion::kSome})
-      EXPECT_THAT(checkOf(flight).fault(suspicion), Not(HasSubstr("stabilised")));
-}
-
 TEST(TurnCheck, AGyroscopeWithoutTurnsIsNamed) {
   EXPECT_THAT(checkOf(withGyro(Eigen::Matrix3d::Zero())).fault(Suspicion::kSome), HasSubstr("no turn at all"));
 }

@@ -17,14 +17,16 @@ constexpr std::size_t kPieceSize = 8 + 8 + 8 + 8 + 4 + 4, kTextSize = 8, kImuSiz
 
 enum KeyframeFlag : std::uint8_t { kAtRest = 1 };
 
+/// What is beyond a sensor's range is kept as what a drop-out has left out.
+bool isUncertain(const ImuSample& sample) { return sample.bridged || sample.gyro_open > 0 || sample.accel_open > 0; }
+
 void encodeImu(const Preintegration& imu, ByteWriter& out) {
   out.vec3(imu.bias().gyro), out.vec3(imu.bias().accel);
   const ImuNoise& noise = imu.noise();
   out.f64(noise.gyro_noise), out.f64(noise.gyro_walk), out.f64(noise.accel_noise), out.f64(noise.accel_walk);
   out.u64(imu.samples().size());
   for (const ImuSample& s : imu.samples())
-    out.i64(s.t_ns), out.vec3(s.gyro), out.vec3(s.accel),
-        out.u8(s.bridged || s.gyro_open > 0 || s.accel_open > 0 ? 1 : 0);
+    out.i64(s.t_ns), out.vec3(s.gyro), out.vec3(s.accel), out.u8(isUncertain(s) ? 1 : 0);
 }
 
 std::shared_ptr<const Preintegration> decodeImu(ByteReader& in) {

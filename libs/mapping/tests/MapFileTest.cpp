@@ -177,6 +177,19 @@ TEST_F(MapFile, EveryValueReturnsToTheBit) {
   EXPECT_EQ(bytesOf(path_), bytesOf(path_ + "2"));
 }
 
+TEST_F(MapFile, WhatIsBeyondTheRangeOfTheImuReturnsAsADropOut) {
+  LineMap map = sampleMap();
+  auto imu = std::make_shared<Preintegration>(ImuBias{}, ImuNoise{});
+  ImuBatch samples{{0}, {1'000'000}, {2'000'000}};
+  samples[1].accel_open = 0.5F;
+  imu->append(samples);
+  map.keyframes[1].imu = imu;
+  writeMap(map, path_);
+  const auto back = readMap(path_).keyframes[1].imu;
+  EXPECT_TRUE(back->samples()[1].bridged);
+  EXPECT_FALSE(back->samples()[2].bridged);
+}
+
 TEST_F(MapFile, AnEmptyMapIsAFile) {
   writeMap({}, path_);
   const LineMap back = readMap(path_);

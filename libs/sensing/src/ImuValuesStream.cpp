@@ -8,13 +8,14 @@ namespace lintel {
 /// From one to the next.
 void ImuValuesStream::handOn(bool at_end, const WarningSink& warn) {
   while (const std::optional<ImuSample> sample = held_.pop(at_end)) spikes_.push(*sample);
-  mend(at_end, warn);
+  handOnMended(at_end, warn);
   if (said_ || !held_.hasLooked()) return;
   said_ = true;
   if (!held_.remark().empty()) warn(Fault::Other, path() + ": " + held_.remark() + ": interpolated");
 }
 
-void ImuValuesStream::mend(bool at_end, const WarningSink& warn) {
+/// Those whose spikes are replaced.
+void ImuValuesStream::handOnMended(bool at_end, const WarningSink& warn) {
   std::string remark;
   while (const std::optional<ImuSample> sample = spikes_.pop(at_end, remark)) {
     if (!remark.empty())
@@ -27,8 +28,8 @@ std::optional<ImuSample> ImuValuesStream::pop(bool at_end, const WarningSink& wa
   std::string remark;
   const std::optional<ImuSample> sample = ends_.pop(at_end, remark);
   if (!remark.empty())
-    warn(Fault::ImuRange, path() + ": " + remark + " (first at " + secondsText(sample->t_ns) +
-                              "), the end of its range: what is beyond is estimated; set a larger range");
+    warn(Fault::ImuRange, path() + ": " + remark + " (estimated from " + secondsText(sample->t_ns) +
+                              " on), the end of its range: set a larger range");
   return sample;
 }
 

@@ -19,7 +19,7 @@ class ImuValuesStream final : public StreamFilter {
 
  private:
   void handOn(bool at_end, const WarningSink& warn);
-  void mend(bool at_end, const WarningSink& warn);
+  void handOnMended(bool at_end, const WarningSink& warn);
   std::optional<ImuSample> pop(bool at_end, const WarningSink& warn);
 
   ReadAhead<ImuSample> ahead_;

@@ -14,9 +14,10 @@ namespace {
 // The smallest ranges of IMUs are 125 degrees/s (2.2 rad/s) and 2 g: an axis may be scaled by a calibration.
 constexpr double kSmallestGyroRange = 1.7, kSmallestAccelRange = 15;  // [rad/s], [m/s^2]
 constexpr int kEndCount = 4, kEndRuns = 2, kEndRow = 10;              // samples at an end, in several runs, or in a row
-constexpr double kBelow = 8.5, kPerBelow = 2;      // steps below an end; what has its value is so many times as often
-constexpr std::int64_t kLongest_ns = 250'000'000;  // of a run that is replaced
-constexpr std::size_t kBeside = 2;                 // samples to each side that the cubic takes
+constexpr double kBelow = 8.5, kPerBelow = 2;        // steps below an end; what has its value is so many times as often
+constexpr std::int64_t kLargestGap_ns = 50'000'000;  // between samples: more is a drop-out
+constexpr std::int64_t kLongest_ns = 250'000'000;    // of a run that is replaced
+constexpr std::size_t kBeside = 2;                   // samples to each side that the cubic takes
 // Of a longer run neither the size nor the end can be guessed: as of drop-outs (Preintegration).
 constexpr double kOpenGyro = 0.15, kOpenAccel = 0.6;  // [rad/s/sqrt(Hz)], [m/s^2/sqrt(Hz)]
 
@@ -75,13 +76,27 @@ bool RangeEnds::isAt(const End& end, std::size_t i) const {
 std::optional<RangeEnds::Run> RangeEnds::runAt(const End& end, std::size_t i) const {
   if (!canEnd(end) || !isAt(end, i)) return std::nullopt;
   Run run{i, i};
-  while (run.first > 0 && isAt(end, run.first - 1)) --run.first;
-  while (run.last + 1 < samples_.size() && isAt(end, run.last + 1)) ++run.last;
+  while (run.first > 0 && goesOn(run.first - 1) && isAt(end, run.first - 1)) --run.first;
+  while (run.last + 1 < samples_.size() && goesOn(run.last) && isAt(end, run.last + 1)) ++run.last;
   return run;
 }
 
+/// Whether the next sample follows without a drop-out.
+bool RangeEnds::goesOn(std::size_t i) const { return samples_[i + 1].t_ns - samples_[i].t_ns <= kLargestGap_ns; }
+
 bool RangeEnds::isComplete(const Run& run) const {
-  return run.last + kBeside < samples_.size() || samples_[run.last].t_ns - samples_[run.first].t_ns > kLongest_ns;
+  const std::size_t known = samples_.size() - 1 - run.last;
+  return known >= kBeside || (known > 0 && !goesOn(run.last)) ||
+         samples_[run.last].t_ns - samples_[run.first].t_ns > kLongest_ns;
+}
+
+/// Whether it is short, and what a cubic takes is there to both sides.
+bool RangeEnds::isSurrounded(const Run& run) const {
+  if (run.first < kBeside || run.last + kBeside >= samples_.size()) return false;
+  if (samples_[run.last].t_ns - samples_[run.first].t_ns > kLongest_ns) return false;
+  for (std::size_t k = 0; k < kBeside; ++k)
+    if (!goesOn(run.first - 1 - k) || !goesOn(run.last + k)) return false;
+  return true;
 }
 
 double RangeEnds::slope(const End& end, std::size_t from, std::size_t to) const {
@@ -89,12 +104,11 @@ double RangeEnds::slope(const End& end, std::size_t from, std::size_t to) const 
   return end.sign * (imuValue(samples_[to], end.axis) - imuValue(samples_[from], end.axis)) / dt;
 }
 
-/// The cubic has the values and slopes of both sides; how far it goes beyond the end is taken as its standard
-/// deviation.
+/// The cubic has the values and slopes of both sides. Its standard deviation is how far it goes beyond the end, or half
+/// of the step to the end where that is more: a single sample's slopes show nothing.
 void RangeEnds::extend(const End& end, const Run& run, ImuSample& sample) const {
   float& open = end.axis < 3 ? sample.gyro_open : sample.accel_open;
-  const bool whole = run.first >= kBeside && run.last + kBeside < samples_.size();
-  if (!whole || samples_[run.last].t_ns - samples_[run.first].t_ns > kLongest_ns) {
+  if (!isSurrounded(run)) {
     open = static_cast<float>(std::max<double>(open, end.axis < 3 ? kOpenGyro : kOpenAccel));
     return;
   }
@@ -108,7 +122,7 @@ void RangeEnds::extend(const End& end, const Run& run, ImuSample& sample) const 
     const double u = 1e-9 * static_cast<double>(t_ns - samples_[before].t_ns) / span_s, w = 1 - u;
     return w * w * ((1 + 2 * u) * from + u * rise) + u * u * ((1 + 2 * w) * to - w * fall);
   };
-  double most = 0;
+  double most = 0.5 * (end.value - std::min(from, to));
   for (std::size_t i = run.first; i <= run.last; ++i) most = std::max(most, cubic(samples_[i].t_ns) - end.value);
   imuValue(sample, end.axis) = end.sign * std::max(end.value, cubic(sample.t_ns));
   open = std::max(open, static_cast<float>(most * std::sqrt(span_s)));
@@ -117,6 +131,7 @@ void RangeEnds::extend(const End& end, const Run& run, ImuSample& sample) const 
 std::optional<ImuSample> RangeEnds::pop(bool at_end, std::string& remark) {
   if (next_ == samples_.size()) return std::nullopt;
   ImuSample sample = samples_[next_];
+  remark.clear();
   for (const End& end : ends_)
     if (const std::optional<Run> run = runAt(end, next_); run && !at_end && !isComplete(*run)) return std::nullopt;
   for (End& end : ends_) {

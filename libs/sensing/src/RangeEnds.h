@@ -20,7 +20,8 @@ class RangeEnds {
   /// Ascending in time.
   void push(const ImuSample& sample);
 
-  /// The next sample, once those around it are known or `at_end`; `remark` says which end was found with it, in words.
+  /// The next sample, once those around it are known or `at_end`; `remark` becomes what is to be said of an end
+  /// that was found with it, or empty.
   std::optional<ImuSample> pop(bool at_end, std::string& remark);
 
  private:
@@ -42,7 +43,9 @@ class RangeEnds {
   static bool canEnd(const End& end);
   bool isAt(const End& end, std::size_t i) const;
   std::optional<Run> runAt(const End& end, std::size_t i) const;
+  bool goesOn(std::size_t i) const;
   bool isComplete(const Run& run) const;
+  bool isSurrounded(const Run& run) const;
   double slope(const End& end, std::size_t from, std::size_t to) const;
   void extend(const End& end, const Run& run, ImuSample& sample) const;
 

@@ -207,7 +207,6 @@ Samples withEnds(const Samples& samples, std::string* remarks) {
     while (const auto next = ends.pop(at_end, remark)) {
       out.push_back(*next);
       *remarks += remark + (remark.empty() ? "" : "\n");
-      remark.clear();
     }
   };
   for (const ImuSample& sample : samples) {
@@ -293,10 +292,10 @@ TEST(ImuValuesStream, ARangeThatIsTooSmallIsSaidOnce) {
   EXPECT_EQ(samples, 1000U);
   EXPECT_GT(open, 100U);
   ASSERT_EQ(warnings.size(), 3U);
-  EXPECT_EQ(
-      warnings[1],
-      "flight: the accelerometer's values along its z axis end at 19.6 m/s^2 (first at 0.720000000 s), the end of "
-      "its range: what is beyond is estimated; set a larger range");
+  EXPECT_EQ(warnings[1],
+            "flight: the accelerometer's values along its z axis end at 19.6 m/s^2 (estimated from 0.720000000 s on), "
+            "the end "
+            "of its range: set a larger range");
 }
 
 TEST(RangeEnds, ALongTimeAtTheEndIsNotGuessed) {
@@ -312,6 +311,28 @@ TEST(RangeEnds, ALongTimeAtTheEndIsNotGuessed) {
   }
 }
 
+TEST(RangeEnds, NothingIsGuessedAcrossADropOut) {
+  Samples in = clipped(violent(1000));
+  std::size_t last = 900;  // in a run
+  while (in[last].gyro.x() != kRange) ++last;
+  for (std::size_t i = last + 4; i < in.size(); ++i) in[i].t_ns += 400'000'000, in[i].gyro.x() = -1;
+  std::string remarks;
+  const Samples out = withEnds(in, &remarks);
+  for (std::size_t i = last; i < last + 4; ++i) {
+    EXPECT_EQ(out[i].gyro, in[i].gyro) << i;
+    EXPECT_FLOAT_EQ(out[i].gyro_open, 0.15F) << "as uncertain as a drop-out";
+  }
+}
+
+TEST(RangeEnds, ASinglePeakIsUncertain) {
+  Samples in = motion(600, 0.01);
+  for (std::size_t i = 100; i < 600; i += 20) in[i].accel.x() = kAccelRange;
+  std::string remarks;
+  const Samples out = withEnds(in, &remarks);
+  EXPECT_NE(remarks, "");
+  for (std::size_t i = 300; i < 600; ++i) EXPECT_EQ(out[i].accel_open > 0.5, (i - 100) % 20 == 0) << i;
+}
+
 TEST(RangeEnds, MotionWithinTheRangeIsLeft) {
   Samples coarse = violent(4000, 0.05), frozen = violent(1000), still = motion(1000), units = violent(1000);
   for (ImuSample& sample : coarse) {  // steps of a sensor of 12 bits: the peaks of the sines are flat for some samples
@@ -321,8 +342,13 @@ TEST(RangeEnds, MotionWithinTheRangeIsLeft) {
   for (std::size_t i = 0; i < 1000; ++i)  // a recorder that repeats samples
     if (i % 3 != 0) frozen[i].gyro = frozen[i - 1].gyro, frozen[i].accel = frozen[i - 1].accel;
   for (ImuSample& sample : still) sample.gyro.setZero(), sample.accel = {0, 0, 9.81};
-  const std::pair<const char*, const Samples&> motions[] = {
-      {"coarse", coarse}, {"repeated", frozen}, {"still", still}, {"a few", Samples(units.begin(), units.begin() + 3)}};
+  Samples pressed = motion(1000, 0.1);  // a centrifuge: what shows is noise, in steps
+  for (ImuSample& sample : pressed) sample.accel.z() = 16 + 0.05 * std::round(sample.accel.x() / 0.4);
+  const std::pair<const char*, const Samples&> motions[] = {{"coarse", coarse},
+                                                            {"repeated", frozen},
+                                                            {"still", still},
+                                                            {"centrifuge", pressed},
+                                                            {"a few", Samples(units.begin(), units.begin() + 3)}};
   for (const auto& [name, in] : motions) {
     std::string remarks;
     const Samples out = withEnds(in, &remarks);

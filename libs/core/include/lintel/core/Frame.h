@@ -26,7 +26,8 @@ struct ImuSample {
   Eigen::Vector3d gyro = Eigen::Vector3d::Zero();   ///< angular rate [rad/s]
   Eigen::Vector3d accel = Eigen::Vector3d::Zero();  ///< specific force [m/s^2]
   bool bridged = false;  ///< the time since the sample before lies in a drop-out: interpolated, not measured
-  /// Densities of what was not measured, as it is beyond the sensor's range, beside the sensor's noise.
+  /// Densities of what was not measured, as it is beyond the sensor's range: in the place of the sensor's noise where
+  /// they are larger.
   float gyro_open = 0, accel_open = 0;  ///< [rad/s/sqrt(Hz)], [m/s^2/sqrt(Hz)]
 };
 

@@ -72,9 +72,9 @@ struct MapParams {
   double view_max_error_px = 3.0;  ///< a view farther off is an outlier
   double min_inlier_share = 0.6;   ///< of a line's views
   double max_sigma_direction_rad = 0.10;
-  double max_sigma_m = 0.03;         ///< of a segment's ends, across it, or
-  double max_far_sigma = 0.003;      ///< relative to the distance it was seen from, where that is more, and
-  double max_relative_sigma = 0.02;  ///< the same where that is less
+  /// Of a segment's ends, across it, d away from where it was seen:
+  /// at most min(max(max_sigma_m, max_far_sigma d), max_relative_sigma d).
+  double max_sigma_m = 0.03, max_far_sigma = 0.003, max_relative_sigma = 0.02;
   double point_max_relative_sigma = 0.20;
   double coverage = 0.2;  ///< a piece of a line is drawn when this share of the views that would see it (and two) do
   MergeParams merge;
