@@ -48,7 +48,7 @@ class AccelerometerCheck {
   Eigen::Matrix<double, 9, 3> sum_ = Eigen::Matrix<double, 9, 3>::Zero();  ///< of R's columns by accelerations
   int count_ = 0;
   std::vector<Eigen::Matrix<double, 9, 3>> means_;  ///< of the span
-  std::vector<double> sizes_, span_sizes_;  ///< of means over a second, over five
+  std::vector<double> sizes_, span_sizes_;          ///< of means over a second, over five
   Eigen::Vector3d lowest_ = Eigen::Vector3d::Constant(1e9), highest_ = Eigen::Vector3d::Constant(-1e9);
   double turned_rad_ = 0;        ///< summed over all samples
   std::vector<double> misfits_;  ///< by axes assignment: summed squared deviations from a span's mean
