@@ -4,16 +4,12 @@
 #include <algorithm>
 #include <cmath>
 
+#include "lintel/core/UnmeasuredMotion.h"
 #include "lintel/geometry/Rotation.h"
 
 namespace lintel {
 
 namespace {
-
-// Densities of what is not known about a motion that was not measured: over half a second, the longest time that is
-// bridged, 0.1 rad and 0.4 m/s remain open when rates change by 0.5 rad/s and 2 m/s^2 within a quarter of a second.
-constexpr double kBridgedGyro = 0.15;  // [rad/s/sqrt(Hz)]
-constexpr double kBridgedAccel = 0.6;  // [m/s^2/sqrt(Hz)]
 
 /// d (R A f) / d A.
 Eigen::Matrix<double, 3, 9> byAxes(const Eigen::Matrix3d& R, const Eigen::Vector3d& f) {
@@ -103,9 +99,9 @@ void Preintegration::integrate(const ImuSample& s0, const ImuSample& s1) {
   accel_axes_jacobian_.topRows<3>() += dt * a_by_A;
   gyro_axes_jacobian_ = A * gyro_axes_jacobian_ + B.leftCols<3>() * bySymmetric(gyro_mean);
   Eigen::Matrix<double, 6, 1> variance;
-  const double gyro = std::max<double>({s1.bridged ? kBridgedGyro : noise_.gyro_noise, s0.gyro_open, s1.gyro_open});
+  const double gyro = std::max<double>({s1.bridged ? kUnmeasuredGyro : noise_.gyro_noise, s0.gyro_open, s1.gyro_open});
   const double accel =
-      std::max<double>({s1.bridged ? kBridgedAccel : noise_.accel_noise, s0.accel_open, s1.accel_open});
+      std::max<double>({s1.bridged ? kUnmeasuredAccel : noise_.accel_noise, s0.accel_open, s1.accel_open});
   variance << Eigen::Vector3d::Constant(gyro * gyro / dt), Eigen::Vector3d::Constant(accel * accel / dt);
   covariance_ = A * covariance_ * A.transpose() + B * variance.asDiagonal() * B.transpose();
   // White noise moves the position within a step on its own: of accel^2 dt^3 / 3 the term in B holds three quarters.

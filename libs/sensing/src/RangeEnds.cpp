@@ -4,8 +4,10 @@
 #include <algorithm>
 #include <cmath>
 
+#include "ImuBatcher.h"
 #include "ImuValue.h"
 #include "lintel/core/Formatted.h"
+#include "lintel/core/UnmeasuredMotion.h"
 
 namespace lintel {
 
@@ -14,12 +16,9 @@ namespace {
 // The smallest ranges of IMUs are 125 degrees/s (2.2 rad/s) and 2 g: an axis may be scaled by a calibration.
 constexpr double kSmallestGyroRange = 1.7, kSmallestAccelRange = 15;  // [rad/s], [m/s^2]
 constexpr int kEndCount = 4, kEndRuns = 2, kEndRow = 10;              // samples at an end, in several runs, or in a row
-constexpr double kBelow = 8.5, kPerBelow = 2;        // steps below an end; what has its value is so many times as often
-constexpr std::int64_t kLargestGap_ns = 50'000'000;  // between samples: more is a drop-out
-constexpr std::int64_t kLongest_ns = 250'000'000;    // of a run that is replaced
-constexpr std::size_t kBeside = 2;                   // samples to each side that the cubic takes
-// Of a longer run neither the size nor the end can be guessed: as of drop-outs (Preintegration).
-constexpr double kOpenGyro = 0.15, kOpenAccel = 0.6;  // [rad/s/sqrt(Hz)], [m/s^2/sqrt(Hz)]
+constexpr double kBelow = 8.5, kPerBelow = 2;      // steps below an end; what has its value is so many times as often
+constexpr std::int64_t kLongest_ns = 250'000'000;  // of a run that is replaced
+constexpr std::size_t kBeside = 2;                 // samples to each side that the cubic takes
 
 }  // namespace
 
@@ -82,7 +81,9 @@ std::optional<RangeEnds::Run> RangeEnds::runAt(const End& end, std::size_t i) co
 }
 
 /// Whether the next sample follows without a drop-out.
-bool RangeEnds::goesOn(std::size_t i) const { return samples_[i + 1].t_ns - samples_[i].t_ns <= kLargestGap_ns; }
+bool RangeEnds::goesOn(std::size_t i) const {
+  return samples_[i + 1].t_ns - samples_[i].t_ns <= ImuBatcher::kMaxGap_ns;
+}
 
 bool RangeEnds::isComplete(const Run& run) const {
   const std::size_t known = samples_.size() - 1 - run.last;
@@ -109,7 +110,7 @@ double RangeEnds::slope(const End& end, std::size_t from, std::size_t to) const 
 void RangeEnds::extend(const End& end, const Run& run, ImuSample& sample) const {
   float& open = end.axis < 3 ? sample.gyro_open : sample.accel_open;
   if (!isSurrounded(run)) {
-    open = static_cast<float>(std::max<double>(open, end.axis < 3 ? kOpenGyro : kOpenAccel));
+    open = static_cast<float>(std::max<double>(open, end.axis < 3 ? kUnmeasuredGyro : kUnmeasuredAccel));
     return;
   }
   const std::size_t before = run.first - 1, after = run.last + 1;
