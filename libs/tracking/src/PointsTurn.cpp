@@ -14,6 +14,7 @@ namespace {
 
 constexpr std::size_t kLeastPairs = 15, kMostPairs = 60;
 constexpr int kRounds = 4, kHypotheses = 20;
+constexpr double kSureCost = 9;            // chi-square by which one of two rotations is clearly the better
 constexpr double kTranslation_rad = 0.05;  // by which translation may pass for rotation: 1 m/s at 1 m in 50 ms
 
 /// The rotation R_c1_c0 that moves points as they were seen to move, robustly, no translation considered.
@@ -45,6 +46,22 @@ Eigen::Quaterniond rotationAlone(const std::vector<TwoViewPair>& pairs, bool wid
   return R_c1_c0;
 }
 
+/// A rotation between the views with the direction of translation that fits best.
+struct Fit {
+  CameraTurn turn;
+  int inliers = 0;
+  double cost = 0;
+};
+
+Fit fitFrom(const Eigen::Quaterniond& R_c1_c0, const std::vector<TwoViewPair>& pairs, const TwoViewParams& params) {
+  const Eigen::Matrix3d loose = Eigen::Matrix3d::Identity() / (kTranslation_rad * kTranslation_rad);
+  const TwoViewMotion motion = twoViewMotion(pairs, R_c1_c0, loose, params);
+  CameraTurn turn;
+  turn.rotation = -logRotation(expRotation(motion.delta) * R_c1_c0);
+  turn.sigma = (motion.information + loose).inverse().diagonal().cwiseSqrt();
+  return {turn, motion.inliers, motion.cost};
+}
+
 std::vector<TwoViewPair> evenly(const std::vector<TwoViewPair>& pairs) {
   const std::size_t step = (pairs.size() + kMostPairs - 1) / kMostPairs;
   std::vector<TwoViewPair> chosen;
@@ -57,18 +74,16 @@ std::vector<TwoViewPair> evenly(const std::vector<TwoViewPair>& pairs) {
 std::optional<CameraTurn> turnOfPoints(const std::vector<TwoViewPair>& pairs, const TwoViewParams& camera) {
   if (pairs.size() < kLeastPairs) return std::nullopt;
   const std::vector<TwoViewPair> chosen = evenly(pairs);
-  const Eigen::Quaterniond R_c1_c0 = rotationAlone(chosen, camera.wide);
   TwoViewParams params;
   params.focal_px = camera.focal_px;
   params.wide = camera.wide;
   params.hypotheses = kHypotheses;
-  const Eigen::Matrix3d loose = Eigen::Matrix3d::Identity() / (kTranslation_rad * kTranslation_rad);
-  const TwoViewMotion motion = twoViewMotion(chosen, R_c1_c0, loose, params);
-  if (2 * static_cast<std::size_t>(motion.inliers) < chosen.size()) return std::nullopt;
-  CameraTurn turn;
-  turn.rotation = -logRotation(expRotation(motion.delta) * R_c1_c0);
-  turn.sigma = (motion.information + loose).inverse().diagonal().cwiseSqrt();
-  return turn;
+  Fit best = fitFrom(rotationAlone(chosen, camera.wide), chosen, params);
+  Fit other = fitFrom(Eigen::Quaterniond::Identity(), chosen, params);
+  if (other.cost < best.cost) std::swap(best, other);
+  if (2 * static_cast<std::size_t>(best.inliers) < chosen.size()) return std::nullopt;
+  if (other.cost < best.cost + kSureCost) best.turn.sigma += (best.turn.rotation - other.turn.rotation).cwiseAbs();
+  return best.turn;
 }
 
 }  // namespace lintel

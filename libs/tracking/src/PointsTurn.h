@@ -9,9 +9,11 @@
 
 namespace lintel {
 
-/// Rotation between two views from points alone, whatever a gyroscope says; without times. Begins with the rotation
-/// that explains most of the points' motion when nothing is translated. Empty when there are fewer than 15 pairs, or
-/// half of them fit no common motion. Of `camera` focal length and kind of rays count.
+/// Rotation between two views from points alone, whatever a gyroscope says; without times. A camera that moves along a
+/// wall and one that turns before it see nearly the same, and the fit has a minimum at either: it begins with the
+/// rotation that explains most of the points' motion when nothing is translated, and with none. The better one counts,
+/// and where it is not clearly better its standard deviations cover the other. Empty when there are fewer than 15
+/// pairs, or half of them fit no common motion. Of `camera` focal length and kind of rays count.
 std::optional<CameraTurn> turnOfPoints(const std::vector<TwoViewPair>& pairs, const TwoViewParams& camera);
 
 }  // namespace lintel

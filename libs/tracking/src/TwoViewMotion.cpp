@@ -144,11 +144,14 @@ TwoViewMotion twoViewMotion(const std::vector<TwoViewPair>& pairs, const Eigen::
   refine(rays, R_information, params, motion);
 
   const Eigen::Quaterniond dR = expRotation(motion.delta);
+  const double width = kRobustScale * params.noise_px / params.focal_px;
   motion.inliers = 0;
   for (std::size_t i = 0; i < rays.size(); ++i) {
     const Rays turned{turnedRay(dR * rays[i].f0, params.wide), rays[i].f1};
-    motion.inlier[i] = std::abs(epipolarDistance(turned, motion.direction, params.wide)) < threshold ? 1 : 0;
+    const double distance = epipolarDistance(turned, motion.direction, params.wide);
+    motion.inlier[i] = std::abs(distance) < threshold ? 1 : 0;
     motion.inliers += motion.inlier[i];
+    motion.cost += kRobustScale * kRobustScale * std::log1p(distance * distance / (width * width));
   }
   return motion;
 }

@@ -19,6 +19,7 @@ struct TwoViewMotion {
   Eigen::Vector3d direction = Eigen::Vector3d::UnitX();   ///< unit translation direction in c1, sign open
   std::vector<char> inlier;                               ///< per pair
   int inliers = 0;
+  double cost = 0;  ///< robust chi-square of all pairs
 };
 
 struct TwoViewParams {

@@ -45,6 +45,31 @@ TEST(PointsTurn, TranslationIsNoRotation) {
   }
 }
 
+/// A wall at 2 m with things up to 0.2 m before it, seen by a camera that moves and hardly turns.
+std::vector<TwoViewPair> wallSeen(const Eigen::Vector3d& rotation, const Eigen::Vector3d& p_c0_c1) {
+  std::vector<TwoViewPair> pairs;
+  for (int i = 0; i < 100; ++i) {
+    const double depth = 2 - 0.2 * std::fmod(i * 0.618, 1.0);
+    const Eigen::Vector3d p_c0(depth * (-0.7 + 0.014 * i), depth * (0.45 * std::sin(1.7 * i)), depth);
+    const Eigen::Vector3d p_c1 = expRotation(rotation).conjugate() * (p_c0 - p_c0_c1);
+    const Eigen::Vector2d noise = 0.2 / kFocal_px * Eigen::Vector2d(std::sin(12.9898 * i), std::sin(78.233 * i));
+    pairs.push_back({p_c0 / p_c0.z(), p_c1 / p_c1.z() + Eigen::Vector3d(noise.x(), noise.y(), 0)});
+  }
+  return pairs;
+}
+
+TEST(PointsTurn, ACameraThatMovesAlongAWallDoesNotTurn) {
+  for (const Eigen::Vector3d& p : {Eigen::Vector3d(0.05, 0, 0), Eigen::Vector3d(0, -0.06, 0.005)}) {
+    const Eigen::Vector3d rotation(0.001, -0.002, 0.001);
+    const auto turn = turnOfPoints(wallSeen(rotation, p), kTwoViews);
+    ASSERT_TRUE(turn);
+    EXPECT_LT((turn->rotation - rotation).norm(), 5e-3)
+        << "translation looks like 25 mrad: " << turn->rotation.transpose();
+    for (int axis = 0; axis < 3; ++axis)
+      EXPECT_LT(std::abs(turn->rotation[axis] - rotation[axis]), 4 * turn->sigma[axis]) << axis;
+  }
+}
+
 TEST(PointsTurn, NothingIsSaidOfFewOrUnrelatedPoints) {
   EXPECT_FALSE(turnOfPoints(std::vector<TwoViewPair>(14), kTwoViews));
   std::vector<TwoViewPair> pairs;
