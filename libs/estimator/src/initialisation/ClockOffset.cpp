@@ -27,6 +27,8 @@ constexpr std::size_t kLeastPairs = 10;
 constexpr double kUnsynchronised = 4;  // standard deviations of the offset, beyond which the camera has no trigger
 // How often a readout is another one than the given, and how often cameras without a trigger roll.
 constexpr double kOtherShare = 0.1, kOtherShareUnsynchronised = 0.5;
+// Of a readout that is as given: more than is taken for granted, so that where images do not tell it stays open.
+constexpr double kSureAsGiven = 0.97;
 constexpr double kLeastReadout_s = 0.002;  // standard deviation: the sum of what the model leaves out
 
 /// Costs by steps of the offset.
@@ -130,7 +132,7 @@ bool findReadout(int place, ClockFit& fit, ClockOffset& found) {
   const double own_sigma_s = std::sqrt(fit.varianceOfRows(there) * there.H.inverse()(3, 3));
   other.readout_sigma_s = std::hypot(own_sigma_s, beside_s - other.readout_s, kLeastReadout_s);
   const double share = shareAsGiven(found, other);
-  if (share > kSureShare) return false;
+  if (share > kSureAsGiven) return false;
   std::tie(found.offset_s, found.sigma_s) =
       likelierAndSigma(share, found.offset_s, found.sigma_s, other.offset_s, other.sigma_s);
   std::tie(found.readout_s, found.readout_sigma_s) =
