@@ -188,6 +188,7 @@ WindowUpdate Estimator::Impl::skipFrame(const FrameTracks& tracks) {
   imu.append(withAxes(pending_imu_, window_.imuAxes()));
   const InertialState state = propagated(stateOf(window_.frames.back()), imu);
   update.T_w_b = state.T_w_b;
+  update.T_w_b_image = poseOfImage(window_, state, gyroAtEnd(imu));
   update.v_w_b = state.v_w_b;
   update.bias = state.bias;
   update.covariance = propagatedCovariance(stateOf(window_.frames.back()), imu, newest_covariance_);
@@ -279,7 +280,7 @@ void Estimator::Impl::startDrift(WindowUpdate& update) {
     covariances.push_back(covariances.empty() ? sigma_->start(window_, frame->id) : sigma_->of(window_, *frame));
   newest_covariance_ = covariances.empty() ? sigma_->start(window_, newest.id) : sigma_->of(window_, newest);
   replacePoses(window_, frames, covariances, memory_, update);
-  if (!update.replaced.empty()) first_pose_ns_ = update.replaced.front().first;
+  if (!update.replaced.empty()) first_pose_ns_ = update.replaced.front().t_ns;
   replaces_from_ns_.reset();
 }
 
@@ -458,6 +459,7 @@ void Estimator::Impl::fillFromMemory() {
 void Estimator::Impl::fillPose(WindowUpdate& update) {
   const WindowFrame& newest = window_.frames.back();
   update.T_w_b = newest.T_w_b();
+  update.T_w_b_image = poseOfImage(window_, stateOf(newest), newest.gyro);
   update.v_w_b = velocityOf(newest.motion.data());
   update.bias = biasOf(newest.motion.data());
   update.covariance = newest_covariance_;

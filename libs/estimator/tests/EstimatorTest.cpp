@@ -587,7 +587,7 @@ std::vector<std::pair<std::int64_t, Pose>> trajectoryOf(const std::vector<Window
   std::vector<std::pair<std::int64_t, Pose>> poses;
   std::size_t settled = 0;
   for (const WindowUpdate& u : updates) {
-    poses.insert(poses.end(), u.replaced.begin(), u.replaced.end());
+    for (const FramePose& frame : u.replaced) poses.emplace_back(frame.t_ns, frame.T_w_b);
     if (u.hasPose()) poses.emplace_back(u.t_ns, u.T_w_b);
     if (u.startWasWrong()) poses.resize(settled);
     if (u.status == EstimatorStatus::kLost) settled = poses.size();

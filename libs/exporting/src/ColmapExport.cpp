@@ -8,7 +8,6 @@
 #include "Text.h"
 #include "Writers.h"
 #include "lintel/geometry/LensNames.h"
-#include "lintel/mapping/KeyframeCameras.h"
 
 // Keyframes and points as a sparse model of COLMAP: a folder with cameras, images and points3D, as text or binary
 // (https://colmap.github.io/format.html). Its poses are T_c_w, and the centre of its upper left pixel is (0.5, 0.5).
@@ -46,19 +45,19 @@ struct ColmapModel {
 
 class ModelMaker {
  public:
-  explicit ModelMaker(const Drawing& drawing) : cameras_(*drawing.map) {
+  explicit ModelMaker(const Drawing& drawing) {
     model_.camera = drawing.map->rig.camera;
-    for (const MapKeyframe* keyframe : drawing.keyframes) addImage(*keyframe);
+    for (const MapKeyframe& keyframe : drawing.keyframes) addImage(keyframe, drawing.map->rig);
     for (const DrawnPart& part : drawing.parts)
       for (const DrawnPoint& point : part.points) addPoint(*point.point);
   }
   ColmapModel take() { return std::move(model_); }
 
  private:
-  void addImage(const MapKeyframe& keyframe) {
+  void addImage(const MapKeyframe& keyframe, const Rig& rig) {
     places_[keyframe.id] = model_.images.size();
     model_.images.push_back({static_cast<std::uint32_t>(model_.images.size() + 1),
-                             cameras_.T_w_c(keyframe.id).inverse(),
+                             (keyframe.T_w_b * rig.T_b_c).inverse(),
                              colmapName(keyframe.t_ns),
                              {}});
   }
@@ -82,7 +81,6 @@ class ModelMaker {
     model_.points.push_back(std::move(added));
   }
 
-  KeyframeCameras cameras_;
   ColmapModel model_;
   std::unordered_map<std::uint64_t, std::size_t> places_;  ///< of keyframes among the images
 };

@@ -9,6 +9,7 @@
 
 #include "GroupNames.h"
 #include "lintel/core/Quantiles.h"
+#include "lintel/mapping/KeyframeCameras.h"
 
 namespace lintel {
 
@@ -87,13 +88,18 @@ void addPoints(const ExportParams& params, bool far_points, Drawing& drawing) {
 
 void addKeyframes(Drawing& drawing) {
   DrawnPart part{"Keyframes", MapLayer::kKeyframes, -1, {}, {}};
-  for (const MapKeyframe& keyframe : drawing.map->keyframes) {
-    const auto strokes = frustumSegments(drawing.map->rig, keyframe.T_w_b, drawing.frustum_m, kKeyframeColour);
-    if (strokes.empty() || !drawable(keyframe.T_w_b)) {
+  const Rig& rig = drawing.map->rig;
+  const KeyframeCameras cameras(*drawing.map);
+  for (MapKeyframe keyframe : drawing.map->keyframes) {
+    const bool sound = drawable(keyframe.T_w_b);
+    keyframe.T_w_b = cameras.T_w_c(keyframe.id) * rig.T_b_c.inverse();
+    keyframe.imu.reset();
+    const auto strokes = frustumSegments(rig, keyframe.T_w_b, drawing.frustum_m, kKeyframeColour);
+    if (strokes.empty() || !sound) {
       ++drawing.summary.dropped;
       continue;
     }
-    drawing.keyframes.push_back(&keyframe);
+    drawing.keyframes.push_back(keyframe);
     part.segments.insert(part.segments.end(), strokes.begin(), strokes.end());
   }
   drawing.summary.keyframes = drawing.keyframes.size();

@@ -37,9 +37,9 @@ struct DrawnPart {
 /// A map made ready to be drawn: selected, coloured, finite. Refers to the map, which must outlive it.
 struct Drawing {
   const LineMap* map = nullptr;
-  std::vector<DrawnPart> parts;  ///< lines by ascending group, then points, keyframes, trajectory; no empty ones
-  std::vector<const MapKeyframe*> keyframes;  ///< drawn ones
-  std::vector<const MapLine*> lines;          ///< drawn ones, ascending id
+  std::vector<DrawnPart> parts;        ///< lines by ascending group, then points, keyframes, trajectory; no empty ones
+  std::vector<MapKeyframe> keyframes;  ///< drawn ones, with the poses at which their images were taken, without IMU
+  std::vector<const MapLine*> lines;   ///< drawn ones, ascending id
   DrawnStructure structure;
   LineStyle style = LineStyle::kLines;
   LineColour colour = LineColour::kKind;

@@ -81,8 +81,8 @@ Json lineData(const Drawing& drawing, const DrawnPart& part) {
 /// What is known of each keyframe, by column. Times are text: they do not fit a reader's double.
 Json keyframeData(const Drawing& drawing) {
   Json ids = Json::array(), times = Json::array();
-  for (const MapKeyframe* keyframe : drawing.keyframes)
-    ids.push_back(keyframe->id), times.push_back(std::to_string(keyframe->t_ns));
+  for (const MapKeyframe& keyframe : drawing.keyframes)
+    ids.push_back(keyframe.id), times.push_back(std::to_string(keyframe.t_ns));
   return {{"id", ids}, {"t_ns", times}, {"strokes_each", kFrustumStrokes}};
 }
 

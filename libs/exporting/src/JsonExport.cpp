@@ -23,7 +23,7 @@ class JsonWriter {
     text_ << ",\n\"rig\": ";
     writeRig(map.rig);
     writeGroups(map);
-    list("keyframes", drawing_.keyframes, [this](const MapKeyframe* keyframe) { writeKeyframe(*keyframe); });
+    list("keyframes", drawing_.keyframes, [this](const MapKeyframe& keyframe) { writeKeyframe(keyframe); });
     list("points", points(), [this](const MapPoint* point) { writePoint(*point); });
     list("lines", drawing_.lines, [this](const MapLine* line) { writeLine(*line); });
     list("corners", placesOf(drawing_.structure.corners), [this](const MapCorner* corner) { writeCorner(*corner); });
@@ -69,7 +69,7 @@ class JsonWriter {
   void list(std::string_view name, const List& all, WriteOne&& write_one) {
     text_ << ",\n\"" << name << "\": [";
     bool first = true;
-    for (const auto* one : all) {
+    for (const auto& one : all) {
       text_ << (first ? "\n" : ",\n");
       write_one(one);
       first = false;

@@ -91,14 +91,14 @@ OutputFiles simplemapFiles(const Drawing& drawing, const std::string& path) {
   auto seen = seenByKeyframe(drawing);
   const Rig& rig = drawing.map->rig;
   mrpt::maps::CSimpleMap map;
-  for (const MapKeyframe* keyframe : drawing.keyframes) {
-    const Pose T_c_w = (keyframe->T_w_b * rig.T_b_c).inverse();
-    const Seen& here = seen[keyframe->id];
+  for (const MapKeyframe& keyframe : drawing.keyframes) {
+    const Pose T_c_w = (keyframe.T_w_b * rig.T_b_c).inverse();
+    const Seen& here = seen[keyframe.id];
     auto frame = mrpt::obs::CSensoryFrame::Create();
-    addCloud("points", cloudOfPoints(here, T_c_w), *keyframe, rig, *frame);
-    addCloud("lines", cloudOfLines(here, T_c_w), *keyframe, rig, *frame);
+    addCloud("points", cloudOfPoints(here, T_c_w), keyframe, rig, *frame);
+    addCloud("lines", cloudOfLines(here, T_c_w), keyframe, rig, *frame);
     // The map does not keep the poses' covariances: MRPT reads zeros as "not known".
-    map.insert(mrpt::poses::CPose3DPDFGaussian::Create(mrptPose(keyframe->T_w_b)), frame);
+    map.insert(mrpt::poses::CPose3DPDFGaussian::Create(mrptPose(keyframe.T_w_b)), frame);
   }
   GzipStream stream;
   auto archive = mrpt::serialization::archiveFrom(stream);

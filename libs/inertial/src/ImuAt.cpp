@@ -54,6 +54,10 @@ std::optional<ImuAt> imuAt(const Preintegration* before, const Preintegration* a
   return imuAt(before ? before->samples() : kNone, after ? after->samples() : kNone, reach_s);
 }
 
+Eigen::Vector3d gyroAtEnd(const Preintegration& imu) {
+  return imu.samples().empty() ? imu.bias().gyro : imu.samples().back().gyro;
+}
+
 MotionChange motionChange(const ImuAt& imu, const Eigen::Vector3d& accel_bias, const Eigen::Quaterniond& R_w_b,
                           const Eigen::Vector3d& gravity_w) {
   return {imu.accel - accel_bias + R_w_b.conjugate() * gravity_w, imu.gyro_slope};

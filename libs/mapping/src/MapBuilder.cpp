@@ -78,7 +78,7 @@ MapBuilder::MapBuilder(const Rig& rig, const MapParams& params) : params_(params
 void MapBuilder::add(const WindowUpdate& update) {
   if (frames_ns_.empty() || update.t_ns > frames_ns_.back()) frames_ns_.push_back(update.t_ns);
   if (update.startWasWrong()) return withdrawStart();
-  material_.trajectory.insert(material_.trajectory.end(), update.replaced.begin(), update.replaced.end());
+  for (const FramePose& frame : update.replaced) material_.trajectory.emplace_back(frame.t_ns, frame.T_w_b);
   if (update.hasPose()) material_.trajectory.emplace_back(update.t_ns, update.T_w_b);
   material_.keyframes.insert(material_.keyframes.end(), update.keyframes.begin(), update.keyframes.end());
   for (const RetiredPoint& point : update.points) material_.points.push_back(recordOf(point));

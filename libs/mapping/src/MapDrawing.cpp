@@ -4,6 +4,7 @@
 #include "CameraErrors.h"
 #include "LineGroups.h"
 #include "lintel/geometry/Rotation.h"
+#include "lintel/mapping/ImagePoses.h"
 #include "lintel/mapping/LineEvidence.h"
 #include "lintel/mapping/LineFitting.h"
 #include "lintel/mapping/MapBuilder.h"
@@ -91,7 +92,7 @@ class MapDrawer {
 LineMap drawMap(const MapParams& params, const MapMaterial& material) {
   LineMap map;
   map.rig = material.rig;
-  map.trajectory = material.trajectory;
+  map.trajectory = posesOfImages(material);
   map.time_offset_s = material.time_offset_s;
   map.pieces = material.pieces;
   map.camera_errors = material.camera_errors;

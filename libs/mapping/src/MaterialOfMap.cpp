@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include "lintel/mapping/ImagePoses.h"
 #include "lintel/mapping/LineFitting.h"
 #include "lintel/mapping/MapBuilder.h"
 
@@ -14,10 +15,10 @@ MapMaterial materialOf(const MapParams& params, const LineMap& map) {
   MapMaterial material;
   material.rig = map.rig;
   material.time_offset_s = map.time_offset_s;
-  material.trajectory = map.trajectory;
   material.pieces = map.pieces;
   material.camera_errors = map.camera_errors;
   material.keyframes = retiredKeyframes(map);
+  material.trajectory = posesOfStates(material, map.trajectory);
   for (const MapPoint& point : map.points) {
     PointRecord record;
     record.id = record.track = point.id, record.known = true;

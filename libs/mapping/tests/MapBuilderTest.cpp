@@ -99,7 +99,7 @@ TEST_F(MapBuilderTest, WhatAWrongStartGaveIsTakenAway) {
   WindowUpdate again;
   again.t_ns = 5200;
   again.status = EstimatorStatus::kTracking;
-  again.replaced = {{5000, Pose()}, {5100, Pose()}};
+  again.replaced = {{5000, {}, {}, {}}, {5100, {}, {}, {}}};
   builder.add(again);
   const MapMaterial material = builder.material();
   EXPECT_EQ(material.keyframes.size(), 5u);

@@ -5,6 +5,7 @@
 
 #include "lintel/core/Formatted.h"
 #include "lintel/core/FreeMemory.h"
+#include "lintel/mapping/ImagePoses.h"
 #include "lintel/mapping/LineSpacing.h"
 #include "lintel/mapping/MapStructure.h"
 #include "lintel/pipeline/RunCosts.h"
@@ -68,10 +69,9 @@ WindowUpdate EstimationStage::process(const TrackedFrame& frame) {
 
 void EstimationStage::addPoses(const WindowUpdate& update) {
   std::vector<OdometryPose>& trajectory = result_.trajectory;
-  for (std::size_t i = 0; i < update.replaced.size(); ++i)
-    trajectory.push_back(
-        {update.replaced[i].first, update.replaced[i].second, triangleOf(update.replaced_covariances.at(i))});
-  if (update.hasPose()) trajectory.push_back({update.t_ns, update.T_w_b, triangleOf(update.covariance)});
+  for (const FramePose& frame : update.replaced)
+    trajectory.push_back({frame.t_ns, frame.T_w_b_image, triangleOf(frame.covariance)});
+  if (update.hasPose()) trajectory.push_back({update.t_ns, update.T_w_b_image, triangleOf(update.covariance)});
   if (update.startWasWrong()) return withdrawStart();
   if (update.status != EstimatorStatus::kLost) return;
   settled_poses_ = trajectory.size();
@@ -154,7 +154,7 @@ void EstimationStage::finishMap(const FinishOptions& options) {
   if (result_.refinement.accepted) {
     result_.rig = material.rig;
     result_.time_offset_s = material.time_offset_s;
-    for (const auto& [t_ns, T_w_b] : material.trajectory) result_.refined_trajectory.push_back({t_ns, T_w_b});
+    for (const auto& [t_ns, T_w_b] : posesOfImages(material)) result_.refined_trajectory.push_back({t_ns, T_w_b});
   }
   if (edges_ && !result_.cancelled) densifyMap(material, options);
   result_.map = drawMap(configuration_.map, material);

@@ -289,8 +289,8 @@ class LintelVio {
 
   /// Where it outlasts the program being killed.
   void saveForNow(const WindowUpdate& update) {
-    for (const auto& [t_ns, T_w_b] : update.replaced) checkpoint_->add({t_ns, T_w_b});
-    if (update.hasPose()) checkpoint_->add({update.t_ns, update.T_w_b});
+    for (const FramePose& frame : update.replaced) checkpoint_->add({frame.t_ns, frame.T_w_b_image});
+    if (update.hasPose()) checkpoint_->add({update.t_ns, update.T_w_b_image});
     if (update.startWasWrong())
       checkpoint_->withdrawStart();
     else if (update.status == EstimatorStatus::kLost)

@@ -4,7 +4,6 @@
 #include <cstdint>
 #include <optional>
 #include <string>
-#include <utility>
 #include <vector>
 
 #include "lintel/estimator/SlidingWindow.h"
@@ -65,22 +64,29 @@ enum class Failure {
   kDiverged,    ///< the same later on: what was estimated before is handed over, but it was going wrong
 };
 
+/// The pose of a frame before the present one.
+struct FramePose {
+  std::int64_t t_ns = 0;
+  Pose T_w_b, T_w_b_image;  ///< as in WindowUpdate
+  StateCovariance covariance = StateCovariance::Zero();
+};
+
 /// What one frame changed.
 struct WindowUpdate {
   std::int64_t t_ns = 0;
   EstimatorStatus status = EstimatorStatus::kInitializing;
   std::string reason;  ///< of waiting or failure, in words
-  Pose T_w_b;
+  Pose T_w_b;          ///< the state: at t_ns
+  Pose T_w_b_image;    ///< when the image was taken: later by what the window knows of the offset between the clocks
   Eigen::Vector3d v_w_b = Eigen::Vector3d::Zero();
   ImuBias bias;
   /// With a pose: of its error relative to the first pose of the start (WindowCovariance.h).
   StateCovariance covariance = StateCovariance::Zero();
   std::optional<ImuBias> bias_sigma;  ///< standard deviations, about once a second
   Failure failure = Failure::kNone;   ///< with kLost
-  /// With the first pose of a start that replaces a wrong one: (t_ns, T_w_b) of the frames before, since the wrong
-  /// start or as far as the new one reaches back.
-  std::vector<std::pair<std::int64_t, Pose>> replaced;
-  std::vector<StateCovariance> replaced_covariances;  ///< of these
+  /// With the first pose of a start that replaces a wrong one: the frames before, since the wrong start or as far as
+  /// the new one reaches back.
+  std::vector<FramePose> replaced;
   std::vector<RetiredKeyframe> keyframes;
   std::vector<RetiredPoint> points;
   std::vector<RetiredLine> lines;

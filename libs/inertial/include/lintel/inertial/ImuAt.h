@@ -29,6 +29,9 @@ std::optional<ImuAt> imuAt(const ImuBatch& before, const ImuBatch& after, double
 /// The same between two intervals; null for one that is not known.
 std::optional<ImuAt> imuAt(const Preintegration* before, const Preintegration* after, double reach_s = kImuReach_s);
 
+/// The angular rate that the last sample of an interval shows [rad/s], its bias where there is none.
+Eigen::Vector3d gyroAtEnd(const Preintegration& imu);
+
 /// How a body's motion changes at one time, body axes.
 struct MotionChange {
   Eigen::Vector3d acceleration_b = Eigen::Vector3d::Zero();          ///< of the body in the world [m/s^2]

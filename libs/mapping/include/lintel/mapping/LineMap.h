@@ -18,7 +18,7 @@ namespace lintel {
 
 class Preintegration;
 
-/// A keyframe of the map.
+/// A keyframe of the map: its state, which the IMU leads to. Where the image was taken: KeyframeCameras.h.
 struct MapKeyframe {
   std::uint64_t id = 0;
   std::int64_t t_ns = 0;
@@ -103,21 +103,22 @@ struct MapView {
 /// The product: keyframes, points and line segments in one world frame (z up); in several when it has pieces that
 /// could not be joined.
 struct LineMap {
-  Rig rig;                                                ///< calibration in use at the end
-  double time_offset_s = 0;                               ///< an image with stamp t shows the world at t + offset
-  std::string configuration;                              ///< effective configuration, YAML text
-  std::string source;                                     ///< name of the recording
-  std::vector<MapKeyframe> keyframes;                     ///< ascending id
-  std::vector<MapPoint> points;                           ///< ascending id
-  std::vector<MapLine> lines;                             ///< ascending id
-  std::vector<MapGroup> groups;                           ///< of parallel lines, the longest in sum first
-  std::vector<MapPiece> pieces;                           ///< ascending first keyframe; empty: there is one
-  std::vector<std::string> recordings;                    ///< names, of a map of several; pieces say which is whose
-  std::vector<MapView> views;                             ///< ascending piece and time; none where they are not kept
-  std::vector<MapCorner> corners;                         ///< in the order of their first lines
-  std::vector<MapPlane> planes;                           ///< the longest lines in sum first
-  std::vector<CameraErrors> camera_errors;                ///< of the keyframes, in their order; empty: not known
-  std::vector<std::pair<std::int64_t, Pose>> trajectory;  ///< (t_ns, T_w_b) of every frame, ascending within a piece
+  Rig rig;                                  ///< calibration in use at the end
+  double time_offset_s = 0;                 ///< an image with stamp t shows the world at t + offset
+  std::string configuration;                ///< effective configuration, YAML text
+  std::string source;                       ///< name of the recording
+  std::vector<MapKeyframe> keyframes;       ///< ascending id
+  std::vector<MapPoint> points;             ///< ascending id
+  std::vector<MapLine> lines;               ///< ascending id
+  std::vector<MapGroup> groups;             ///< of parallel lines, the longest in sum first
+  std::vector<MapPiece> pieces;             ///< ascending first keyframe; empty: there is one
+  std::vector<std::string> recordings;      ///< names, of a map of several; pieces say which is whose
+  std::vector<MapView> views;               ///< ascending piece and time; none where they are not kept
+  std::vector<MapCorner> corners;           ///< in the order of their first lines
+  std::vector<MapPlane> planes;             ///< the longest lines in sum first
+  std::vector<CameraErrors> camera_errors;  ///< of the keyframes, in their order; empty: not known
+  /// (t_ns, T_w_b) of every frame when its image was taken (ImagePoses.h), ascending within a piece.
+  std::vector<std::pair<std::int64_t, Pose>> trajectory;
 };
 
 }  // namespace lintel

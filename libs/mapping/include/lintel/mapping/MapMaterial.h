@@ -92,7 +92,7 @@ struct MapMaterial {
   std::vector<CameraErrors> camera_errors;  ///< of the keyframes, in their order; empty: not known
   std::vector<PointRecord> points;
   std::vector<LineRecord> lines;
-  /// (t_ns, T_w_b) of every frame with a pose, ascending: causal, and of the frames that a start was made of.
+  /// (t_ns, T_w_b) of every frame with a state, ascending: causal, and of the frames that a start was made of.
   std::vector<std::pair<std::int64_t, Pose>> trajectory;
 };
 
