@@ -8,8 +8,9 @@
 namespace lintel {
 namespace {
 
-constexpr double kFaulty = 0.1;   ///< of the images
-constexpr double kAllOver = 0.5;  ///< of the image: more than a vehicle shows of itself
+constexpr double kFaulty = 0.1;         ///< of the images
+constexpr double kLeastFollowed = 0.7;  ///< images in which a point is followed, on average; 1 to 3 with much noise
+constexpr double kAllOver = 0.5;        ///< of the image: more than a vehicle shows of itself
 
 }  // namespace
 
@@ -46,6 +47,12 @@ std::string imageFault(const FrontEndStatistics& tracking) {
   if (const double repeated = share(tracking.images_repeated); repeated > kFaulty) {
     return formatted("%.0f %% of the images repeat the one before although the IMU turns: the recorder lost images",
                      100 * repeated);
+  }
+  const PointStatistics& points = tracking.points;
+  if (const std::int64_t all = points.detected;
+      all > 0 && static_cast<double>(points.tracked) < kLeastFollowed * static_cast<double>(all)) {
+    return "most points that are found are lost in the next image: surfaces without texture, darkness, blur, or images "
+           "that are not in order";
   }
   return {};
 }

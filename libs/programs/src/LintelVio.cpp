@@ -5,7 +5,6 @@
 #include <chrono>
 #include <cstdio>
 #include <filesystem>
-#include <iomanip>
 #include <optional>
 #include <ostream>
 #include <stdexcept>
@@ -16,6 +15,7 @@
 #include "RecordingInfo.h"
 #include "RecordingOptions.h"
 #include "RunFolder.h"
+#include "RunSummary.h"
 #include "StopSignals.h"
 #include "lintel/core/AtomicFile.h"
 #include "lintel/core/Formatted.h"
@@ -77,7 +77,7 @@ class LintelVio {
     if (result.cancelled) result.error = stoppedBy(stop, result);
     writeOutput(result, warnings);
     checkpoint_->remove();
-    if (!quiet_) summarise(result, wall_s);
+    if (!quiet_) summarise(result, {output_, exported_, wall_s}, out_);
     if (result.cancelled)
       throw Stopped(result.error + "; trajectory and map until then are in " + output_, stop.exitCode());
     if (!result.error.empty())
@@ -333,60 +333,6 @@ class LintelVio {
     const auto picture = std::find(exports_.begin(), exports_.end(), "png");
     if (picture != exports_.end()) record.map_picture = bytesOfFile(fs::path(output_) / "map.png");
     return runReport(record, result, series_);
-  }
-
-  void summarisePieces(const std::vector<MapPiece>& pieces) {
-    if (pieces.size() < 2) return;
-    const auto apart =
-        std::count_if(pieces.begin(), pieces.end(), [](const MapPiece& piece) { return piece.world != 0; });
-    out_ << pieces.size() << " pieces between interruptions: ";
-    if (apart == 0) {
-      out_ << "places that they have in common bring the refined ones into one frame\n";
-    } else {
-      out_ << apart << " not in the frame of the first, as no place is common for certain\n";
-    }
-  }
-
-  void summarise(const OdometryResult& result, double wall_s) {
-    const OdometryStatistics& s = result.statistics;
-    double length = 0;
-    for (std::size_t i = 1; i < result.trajectory.size(); ++i)
-      length += (result.trajectory[i].T_w_b.p - result.trajectory[i - 1].T_w_b.p).norm();
-    if (!result.fault().empty()) out_ << "NOT TO BE TRUSTED: " << result.fault() << "\n";
-    out_ << std::fixed << std::setprecision(1);
-    out_ << s.frames << " frames in " << durationText(wall_s) << " ("
-         << static_cast<double>(s.frames) / std::max(wall_s, 1e-3) << " frames/s), " << s.frames_with_pose
-         << " with a pose, " << length << " m travelled";
-    if (s.first_pose_s > 0) out_ << ", first pose after " << s.first_pose_s << " s";
-    out_ << "\n";
-    for (const std::string& failure : s.failures) out_ << "started anew " << failure << "\n";
-    summarisePieces(result.map.pieces);
-    for (const Stretch& blind : s.blind)
-      out_ << "nothing to be seen from " << blind.from_s << " to " << blind.to_s
-           << " s: the IMU alone carried the poses there\n";
-    out_ << "map: " << result.map.lines.size() << " lines, " << result.map.points.size() << " points, "
-         << result.map.keyframes.size() << " keyframes\n";
-    const auto mapped = std::count_if(result.map.lines.begin(), result.map.lines.end(),
-                                      [](const MapLine& line) { return line.mapped; });
-    if (mapped > 0)
-      out_ << "     " << mapped << " of the lines tracking had missed: found in " << result.densification.images
-           << " images afterwards\n";
-    if (result.lines_beside > 0)
-      out_ << "     " << result.lines_beside
-           << " more lines run beside better seen ones and were left out (map.spacing.min_m, 0 keeps them)\n";
-    if (!result.refinement.verdict.empty()) out_ << result.refinement.verdict << "\n";
-    if (result.refined_trajectory.size() > s.frames_with_pose)
-      out_ << "     its trajectory has " << result.refined_trajectory.size() << " poses: the frames that "
-           << (result.map.pieces.size() > 1 ? "starts were" : "the start was") << " made of have one as well\n";
-    const fs::path folder(output_);
-    out_ << "written: " << (folder / "trajectory.tum").string() << ", trajectory_covariance.csv"
-         << (result.refinement.accepted ? ", trajectory_refined.tum" : "")
-         << ", map.lintel, stats.json, config.yaml, report.html" << (result.found_mask ? ", mask.pgm" : "") << "\n";
-    for (const std::string& file : exported_) {
-      std::string hint = viewerHint(fs::path(file).extension().string().substr(1));
-      if (const std::size_t place = hint.find("FILE"); place != std::string::npos) hint.replace(place, 4, file);
-      out_ << "  " << file << ": open it with " << hint << "\n";
-    }
   }
 
   std::string noPose(const OdometryResult& result) const {
