@@ -10,6 +10,7 @@
 #include "initialisation/StartBuffer.h"
 #include "initialisation/StartMemory.h"
 #include "initialisation/StartReplacement.h"
+#include "initialisation/StartTries.h"
 #include "landmarks/LineDegeneracy.h"
 #include "landmarks/LineTriangulation.h"
 #include "landmarks/ParallelGroups.h"
@@ -42,10 +43,6 @@ namespace {
 // Window frames that a start is on trial: as long as the window reaches, and again.
 constexpr int kTrialFrames = 30;
 constexpr double kMostScaleSigma = 0.02;  // no prior takes points in before: it is linear, and as wrong as their scale
-/// Window frames that come in before a start is tried again in place of a wrong one: they show more than it was made
-/// of.
-constexpr int kFramesBeforeRetrial = 5;
-constexpr int kFramesBetweenTries = 4;  // with a full buffer, of which little is new then
 
 /// When a solve may end, see SolveLimits::min_move. After it mostly landmarks move, one by one: waiting for them took a
 /// quarter of the solver's time and made the trajectory a few per cent better on average.
@@ -132,9 +129,7 @@ class Estimator::Impl {
   Pose anchor_T_w_b_;  // where a new start continues
 
   StartMemory memory_;
-  int frames_to_wait_ = 0;        // before a start is tried
-  bool waits_for_scale_ = false;  // since the last try with a full buffer
-  std::string waits_for_;
+  StartTries tries_;
   std::int64_t first_pose_ns_ = 0;                // of the present start
   std::optional<std::int64_t> replaces_from_ns_;  // first pose of the wrong start that is to be replaced
 };
@@ -227,9 +222,8 @@ void Estimator::Impl::addFrame(const FrameTracks& tracks) {
 
 void Estimator::Impl::initialise(WindowUpdate& update) {
   while (static_cast<int>(window_.frames.size()) > params_.initializer.max_frames) shortenBuffer();
-  if (frames_to_wait_ > 0) {
-    --frames_to_wait_;
-    update.reason = waits_for_;
+  if (!tries_.due()) {
+    update.reason = tries_.reason();
     return;
   }
   SlidingWindow buffer = window_;
@@ -239,13 +233,10 @@ void Estimator::Impl::initialise(WindowUpdate& update) {
   if (update.reason == kBiasImplausible) initializer_.expectLargerBias();
   if (!update.reason.empty()) {
     if (static_cast<int>(buffer.frames.size()) < params_.initializer.max_frames) return;
-    waits_for_scale_ = update.reason == kScaleUnknown;
-    frames_to_wait_ = kFramesBetweenTries;
-    waits_for_ = update.reason;
-    return;
+    return tries_.failed(update.reason);
   }
   window_ = std::move(buffer);
-  waits_for_scale_ = false;
+  tries_.reset();
   moveToAnchor();
   tracking_ = true;
   blind_frames_ = tracks_since_start_ = 0;
@@ -264,7 +255,7 @@ void Estimator::Impl::initialise(WindowUpdate& update) {
 
 /// Makes room in a full buffer. A frame that is left out between others has its pose from the IMU if it is replaced.
 void Estimator::Impl::shortenBuffer() {
-  const std::size_t k = waits_for_scale_ ? frameToThinOut(window_) : 0;
+  const std::size_t k = tries_.forScale() ? frameToThinOut(window_) : 0;
   if (k > 0) memory_.addSkipped(window_.frames[k].t_ns, window_.frames.front().t_ns);
   leaveOut(k, window_);
 }
@@ -405,16 +396,14 @@ void Estimator::Impl::fail(Failure failure, const std::string& reason, WindowUpd
   }
   clearWindow(keep_calibration);
   tracking_ = false;
-  waits_for_scale_ = false;
+  tries_.reset();
   replaces_from_ns_.reset();
   if (start_was_wrong) {
     replaces_from_ns_ = first_pose_ns_;
-    frames_to_wait_ = kFramesBeforeRetrial;
-    waits_for_ = "the start before was wrong";
+    tries_.startWasWrong();
     fillFromMemory();
   } else {
     memory_.clear();
-    frames_to_wait_ = 0;
   }
 }
 
@@ -478,8 +467,7 @@ WindowUpdate Estimator::Impl::finish() {
   tracking_ = false;
   pending_imu_.clear();
   memory_.clear();
-  frames_to_wait_ = 0;
-  waits_for_scale_ = false;
+  tries_.reset();
   replaces_from_ns_.reset();
   return update;
 }

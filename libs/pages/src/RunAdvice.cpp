@@ -44,7 +44,7 @@ class Adviser {
 
   void start() {
     if (s_.frames_with_pose == 0) {
-      say("No pose was found" + (s_.last_wait.empty() ? std::string() : " (" + s_.last_wait + ")") +
+      say("No pose was found" + (s_.main_wait.empty() ? std::string() : " (" + s_.main_wait + ")") +
           ". Start where the camera moves sideways and sees texture (--from), and check camera calibration, camera-IMU "
           "rotation and that IMU and images carry times of one clock.");
     } else if (s_.first_pose_s > kLateStart_s) {

@@ -86,7 +86,7 @@ TEST(RunAdvice, SaysWhatToDoAboutEachFault) {
 TEST(RunAdvice, WithoutAPoseItSaysHowToGetOne) {
   GoodRun run;
   run.result.statistics.frames_with_pose = 0;
-  run.result.statistics.last_wait = "too little parallax";
+  run.result.statistics.main_wait = "too little parallax";
   EXPECT_THAT(run.advice(), Contains(HasSubstr("(too little parallax). Start where the camera moves")));
 }
 

@@ -188,7 +188,7 @@ void EstimationStage::count(const WindowUpdate& update) {
     interrupted_ns_.reset();
     if (s.first_start_s < 0) s.first_start_s = t_s;
   } else if (update.status == EstimatorStatus::kInitializing && update.reason != "between window frames") {
-    s.last_wait = update.reason;
+    if (++waits_[update.reason] >= waits_[s.main_wait]) s.main_wait = update.reason;
     ++s.frames_waiting;
     s.frames_without_scale += update.reason == kScaleUnknown ? 1 : 0;
   }

@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <map>
+#include <string>
+
 #include "EdgeStage.h"
 #include "LoopStage.h"
 #include "TrackingStage.h"
@@ -47,6 +50,7 @@ class EstimationStage {
   std::optional<EdgeStage> edges_;  ///< when the map is densified
   const BatchRefinement refinement_;
   OdometryResult& result_;
+  std::map<std::string, std::size_t> waits_;  // frames by what initialisation waited for
   bool was_blind_ = false;
   std::optional<std::int64_t> interrupted_ns_;         ///< without a pose since then
   std::size_t settled_poses_ = 0, settled_blind_ = 0;  ///< of former starts

@@ -48,13 +48,13 @@ std::string imageFault(const FrontEndStatistics& tracking) {
     return formatted("%.0f %% of the images repeat the one before although the IMU turns: the recorder lost images",
                      100 * repeated);
   }
-  const PointStatistics& points = tracking.points;
-  if (const std::int64_t all = points.detected;
-      all > 0 && static_cast<double>(points.tracked) < kLeastFollowed * static_cast<double>(all)) {
-    return "most points that are found are lost in the next image: surfaces without texture, darkness, blur, or images "
-           "that are not in order";
-  }
   return {};
+}
+
+std::string textureFault(const PointStatistics& points) {
+  if (static_cast<double>(points.tracked) >= kLeastFollowed * static_cast<double>(points.detected)) return {};
+  return "most points that are found are lost in the next image: surfaces without texture, darkness, blur, or images "
+         "that are not in order";
 }
 
 }  // namespace lintel

@@ -16,4 +16,7 @@ std::string imagesRemark(const FrontEndStatistics& tracking);
 /// What is wrong with more than a tenth of the images: a likely cause where a run fails. Empty: nothing.
 std::string imageFault(const FrontEndStatistics& tracking);
 
+/// Whether most points are lost at once, another likely cause: where the gyroscope leads the tracker right.
+std::string textureFault(const PointStatistics& points);
+
 }  // namespace lintel

@@ -178,8 +178,9 @@ std::string RunCheck::cause(const OdometryStatistics& s) const {
   if (const double lever_m = rig_.T_b_c.p.norm(); lever_m > kLongLever_m) {
     return formatted("T_BS says that the camera is %.1f m away from the IMU: check its unit (m)", lever_m);
   }
+  if (std::string fault = textureFault(s.front_end.points); !fault.empty()) return fault;
   if (!turns_.agree()) return {};
-  if (s.frames_with_pose == 0 && s.last_wait == kScaleUnknown)
+  if (s.frames_with_pose == 0 && s.main_wait == kScaleUnknown)
     return "the camera may accelerate too little to show the scale above the IMU's noise: start where it moves more "
            "strongly (--from), or look at the accelerometer (its sign: at rest it shows 9.8 m/s^2 upwards; unit)";
   return "camera and gyroscope turn together, so look at the accelerometer (its sign: at rest it shows 9.8 m/s^2 "
@@ -195,7 +196,7 @@ std::string RunCheck::verdict(const OdometryStatistics& s, const Rig& estimated,
   }
   if (std::string fault = accelerometer_.sizeFault(); !fault.empty()) return fault;
   const bool no_pose = s.frames_with_pose == 0;
-  std::string fault = no_pose ? "no pose was found (" + s.last_wait + ")" : symptom(s, estimated, refinement);
+  std::string fault = no_pose ? "no pose was found (" + s.main_wait + ")" : symptom(s, estimated, refinement);
   if (fault.empty()) return sigma_.fault();
   const std::string likely = cause(s);
   if (!likely.empty()) return fault + "; " + likely;

@@ -37,14 +37,14 @@ TEST(ImageFault, IsWhatATenthOfTheImagesShow) {
   EXPECT_THAT(imageFault(tracking), HasSubstr("25 % of the images show nothing"));
 }
 
-TEST(ImageFault, PointsThatAreNotFollowedAreNamed) {
-  FrontEndStatistics tracking;
-  tracking.frames = 100;
-  tracking.points.detected = 1000;
-  tracking.points.tracked = 1000;  // an image each, as with much noise
-  EXPECT_THAT(imageFault(tracking), IsEmpty());
-  tracking.points.tracked = 400;
-  EXPECT_THAT(imageFault(tracking), HasSubstr("surfaces without texture"));
+TEST(TextureFault, IsThatMostPointsAreLostInTheNextImage) {
+  PointStatistics points;
+  EXPECT_THAT(textureFault(points), IsEmpty());
+  points.detected = 1000;
+  points.tracked = 1000;  // an image each, as with much noise
+  EXPECT_THAT(textureFault(points), IsEmpty());
+  points.tracked = 400;
+  EXPECT_THAT(textureFault(points), HasSubstr("surfaces without texture"));
 }
 
 }  // namespace

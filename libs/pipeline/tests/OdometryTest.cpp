@@ -97,7 +97,7 @@ TEST_P(OdometryTest, WithoutAPoseItSaysWhatWasWaitedFor) {
   EXPECT_TRUE(result.trajectory.empty());
   EXPECT_EQ(result.statistics.frames_with_pose, 0u);
   EXPECT_LT(result.statistics.first_pose_s, 0);
-  EXPECT_EQ(result.statistics.last_wait, "collecting frames");
+  EXPECT_EQ(result.statistics.main_wait, "collecting frames");
   EXPECT_TRUE(result.map.keyframes.empty());
 }
 

@@ -237,7 +237,7 @@ std::string verdictWithoutPose(const std::string& wait) {
     check.add(tracked, {});
     ++statistics.frames;
   }
-  statistics.last_wait = wait;
+  statistics.main_wait = wait;
   return check.verdict(statistics, eurocRig());
 }
 

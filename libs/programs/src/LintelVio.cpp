@@ -337,7 +337,7 @@ class LintelVio {
 
   std::string noPose(const OdometryResult& result) const {
     if (result.statistics.frames == 0) return input_ + ": no frame between --from and --to; choose another range";
-    const std::string& wait = result.statistics.last_wait;
+    const std::string& wait = result.statistics.main_wait;
     return input_ + ": no pose was found (" + (wait.empty() ? "too short" : wait) +
            "); start where the camera moves and sees texture (--from), and check the calibration";
   }

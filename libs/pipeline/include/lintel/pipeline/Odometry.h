@@ -49,7 +49,7 @@ struct OdometryStatistics {
   double mean_lines_through_epipole = 0, mean_lines_direction_unknown = 0, mean_lines_distance_unknown = 0;
   std::vector<std::string> failures;                   ///< time and reason of each reset
   std::vector<Stretch> blind;                          ///< images showed too little: poses are the IMU's alone
-  std::string last_wait;                               ///< what initialisation waited for last
+  std::string main_wait;                               ///< what initialisation waited for in most frames
   std::size_t frames_waiting = 0;                      ///< window frames on which it waited
   std::size_t frames_without_scale = 0;                ///< of these, those on which it was the scale alone
   StageClock decoding, tracking, estimation, mapping;  ///< a value a frame

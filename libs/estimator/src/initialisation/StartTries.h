@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <string>
+
+namespace lintel {
+
+/// With which frames a start is tried: with each until the buffer is full, then with every fifth, of which little is
+/// new. Of a motion that has not shown the scale for long they show even less, and a try with a full buffer takes up to
+/// seconds: tries are as far apart as a tenth of the wait then.
+class StartTries {
+ public:
+  /// Counts a frame; whether a start is to be tried with it.
+  bool due();
+
+  /// A try with a full buffer was given up, for what initialise() (Initializer.h) says.
+  void failed(const std::string& reason);
+
+  /// A start was wrong: it is tried again when there are frames that show more than it was made of.
+  void startWasWrong();
+
+  void reset() { *this = {}; }
+
+  const std::string& reason() const { return reason_; }  ///< of waiting
+  bool forScale() const { return for_scale_; }           ///< all that the last try lacked
+
+ private:
+  int frames_to_wait_ = 0, waited_for_scale_ = 0;
+  bool for_scale_ = false;
+  std::string reason_;
+};
+
+}  // namespace lintel
