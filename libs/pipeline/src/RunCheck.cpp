@@ -18,6 +18,7 @@ constexpr double kLargestAcceleration = 3;  // [m/s^2]
 // Cars and racing drones gain more: they are believed where all keyframes' images and the IMU agree with it.
 constexpr double kLargestConfirmed = 20;
 constexpr double kLongLever_m = 2;  // longer than what holds a camera and its IMU
+constexpr double kFewPoses = 0.25;  // of all frames
 constexpr double kLeastShareWithPose = 0.5;
 
 // How far the estimated calibration may go from the given one: some times what a rough calibration is wrong by (focal
@@ -146,6 +147,10 @@ std::string RunCheck::symptom(const OdometryStatistics& s, const Rig& estimated,
     return formatted("the estimate did not last: %zu starts, poses for %.0f %% of the frames", s.resets + 1,
                      100 * static_cast<double>(s.frames_with_pose) / static_cast<double>(s.frames));
   }
+  // No fault by itself, as after a long rest; but a smaller contradiction may be why.
+  const double share = s.frames > 0 ? static_cast<double>(s.frames_with_pose) / static_cast<double>(s.frames) : 1;
+  if (share < kFewPoses && !turns_.fault(Suspicion::kSome, clock_offset_s_).empty())
+    return formatted("poses for only %.0f %% of the frames", 100 * share);
   const std::string fault = imuFault(refinement);
   return fault.empty() ? calibrationFault(rig_, estimated) : fault;
 }

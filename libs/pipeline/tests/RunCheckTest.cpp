@@ -212,8 +212,9 @@ TEST(RunCheck, TheGyroscopesBiasIsNoTurnOfGravity) {
   EXPECT_EQ(axesMisfitOfCircles({0.06, 0.02, 0.07}), 1);
 }
 
-/// Of a run whose images, gyroscope and accelerometer are right, and that found no pose for the reason `wait`.
-std::string verdictWithoutPose(const std::string& wait) {
+/// Of a run whose gyroscope and accelerometer are right, and that found poses for a share of its frames, as it waited
+/// for `wait`; turns about the images' axes look larger by `gain`.
+std::string verdictOfTurns(const std::string& wait, double share_with_pose = 0, double gain = 1) {
   TrackSimulationParams tracks;
   tracks.duration_s = 12;
   const SimulatedTracks flight = simulateTracks(FigureTrajectory(), eurocRig(), ImuSimulatorParams{}, tracks);
@@ -231,20 +232,29 @@ std::string verdictWithoutPose(const std::string& wait) {
     tracked.step.imu = frame.imu;
     const Eigen::Quaterniond R_w_c = frame.truth.state.T_w_b.q * eurocRig().T_b_c.q;
     if (before)
-      tracked.turn = {from_ns, frame.tracks.t_ns, logRotation(before->conjugate() * R_w_c),
+      tracked.turn = {from_ns, frame.tracks.t_ns,
+                      Eigen::Vector3d(gain, gain, 1).asDiagonal() * logRotation(before->conjugate() * R_w_c),
                       Eigen::Vector3d::Constant(0.001)};
     before = R_w_c, from_ns = frame.tracks.t_ns;
     check.add(tracked, {});
     ++statistics.frames;
   }
   statistics.main_wait = wait;
+  statistics.frames_with_pose = static_cast<std::size_t>(share_with_pose * static_cast<double>(statistics.frames));
   return check.verdict(statistics, eurocRig());
 }
 
 TEST(RunCheck, WhereOnlyTheScaleIsMissingTheMotionIsNamedBeforeTheAccelerometer) {
-  EXPECT_NE(verdictWithoutPose(kScaleUnknown).find("may accelerate too little"), std::string::npos);
-  EXPECT_NE(verdictWithoutPose("too few points agree with the motion").find("so look at the accelerometer"),
+  EXPECT_NE(verdictOfTurns(kScaleUnknown).find("may accelerate too little"), std::string::npos);
+  EXPECT_NE(verdictOfTurns("too few points agree with the motion").find("so look at the accelerometer"),
             std::string::npos);
+}
+
+TEST(RunCheck, WhereFewFramesHaveAPoseASmallerContradictionCounts) {
+  EXPECT_EQ(verdictOfTurns("", 0.1), "") << "a long rest";
+  EXPECT_EQ(verdictOfTurns("", 0.9, 1.4), "") << "the window finds the focal length";
+  const std::string verdict = verdictOfTurns("", 0.1, 1.4);
+  EXPECT_NE(verdict.find("poses for only 10 % of the frames; the focal length"), std::string::npos) << verdict;
 }
 
 /// Half a minute of turning about x; each second keyframe jumps.
