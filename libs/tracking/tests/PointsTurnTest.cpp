@@ -13,11 +13,13 @@ namespace {
 constexpr double kFocal_px = 460;
 const TwoViewParams kTwoViews{kFocal_px};
 
-/// 100 points at depths from 2 to 8 seen by a camera that turns by `rotation` (its new axes in the old ones) and moves.
-std::vector<TwoViewPair> pairsOf(const Eigen::Vector3d& rotation, const Eigen::Vector3d& p_c0_c1, double noise_px = 0) {
+/// 100 points from 2 m on, over a `depth_m`, seen by a camera that turns by `rotation` (its new axes in the old ones)
+/// and moves.
+std::vector<TwoViewPair> pairsOf(const Eigen::Vector3d& rotation, const Eigen::Vector3d& p_c0_c1, double noise_px,
+                                 double depth_m = 6) {
   std::vector<TwoViewPair> pairs;
   for (int i = 0; i < 100; ++i) {
-    const double depth = 2 + 6 * std::fmod(i * 0.618, 1.0);
+    const double depth = 2 + depth_m * std::fmod(i * 0.618, 1.0);
     const Eigen::Vector3d p_c0(depth * (-0.7 + 0.014 * i), depth * (0.45 * std::sin(1.7 * i)), depth);
     const Eigen::Vector3d p_c1 = expRotation(rotation).conjugate() * (p_c0 - p_c0_c1);
     const Eigen::Vector2d noise = noise_px / kFocal_px * Eigen::Vector2d(std::sin(12.9898 * i), std::sin(78.233 * i));
@@ -45,23 +47,10 @@ TEST(PointsTurn, TranslationIsNoRotation) {
   }
 }
 
-/// A wall at 2 m with things up to 0.2 m before it, seen by a camera that moves and hardly turns.
-std::vector<TwoViewPair> wallSeen(const Eigen::Vector3d& rotation, const Eigen::Vector3d& p_c0_c1) {
-  std::vector<TwoViewPair> pairs;
-  for (int i = 0; i < 100; ++i) {
-    const double depth = 2 - 0.2 * std::fmod(i * 0.618, 1.0);
-    const Eigen::Vector3d p_c0(depth * (-0.7 + 0.014 * i), depth * (0.45 * std::sin(1.7 * i)), depth);
-    const Eigen::Vector3d p_c1 = expRotation(rotation).conjugate() * (p_c0 - p_c0_c1);
-    const Eigen::Vector2d noise = 0.2 / kFocal_px * Eigen::Vector2d(std::sin(12.9898 * i), std::sin(78.233 * i));
-    pairs.push_back({p_c0 / p_c0.z(), p_c1 / p_c1.z() + Eigen::Vector3d(noise.x(), noise.y(), 0)});
-  }
-  return pairs;
-}
-
 TEST(PointsTurn, ACameraThatMovesAlongAWallDoesNotTurn) {
   for (const Eigen::Vector3d& p : {Eigen::Vector3d(0.05, 0, 0), Eigen::Vector3d(0, -0.06, 0.005)}) {
     const Eigen::Vector3d rotation(0.001, -0.002, 0.001);
-    const auto turn = turnOfPoints(wallSeen(rotation, p), kTwoViews);
+    const auto turn = turnOfPoints(pairsOf(rotation, p, 0.2, 0.2), kTwoViews);
     ASSERT_TRUE(turn);
     EXPECT_LT((turn->rotation - rotation).norm(), 5e-3)
         << "translation looks like 25 mrad: " << turn->rotation.transpose();
