@@ -58,7 +58,8 @@ std::size_t takePoses(const PosesInTime& poses, MapMaterial& material) {
     }
   }
   if (kept.size() < 2) throw PosesError("fewer than two keyframes of the map have a pose");
-  for (RetiredKeyframe& keyframe : kept) keyframe.imu.reset();
+  for (RetiredKeyframe& keyframe : kept) keyframe.imu.reset(), keyframe.offset_change_s = 0;
+  material.time_offset_s = 0;  // they are those at which the images were taken
   material.keyframes = std::move(kept);
   material.camera_errors.clear();  // these poses are taken as they are
   material.trajectory = poses;

@@ -60,9 +60,10 @@ class MapDensifying {
     line_.option("recording", input_, "The recording of the map").required().type("INPUT");
     line_.option("-o,--output", output_, "Map to write").required().type("FILE.lintel");
     line_
-        .option("--poses", poses_,
-                "Poses of the IMU, TUM or EuRoC state CSV, that take the place of the map's: points and lines are "
-                "estimated anew with them")
+        .option(
+            "--poses", poses_,
+            "Poses of the IMU when the images were taken, under their stamps (TUM or EuRoC state CSV), in the place of "
+            "the map's: points and lines are estimated anew with them")
         .type("FILE");
     line_.option("-c,--config", config_, "Configuration; `map` and `densification` count").type("CONFIG.yaml");
     line_.option("--set", settings_, "Set one option, e.g. --set densification.views=40")

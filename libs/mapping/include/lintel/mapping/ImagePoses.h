@@ -14,8 +14,8 @@ namespace lintel {
 /// the motion that the neighbours in the trajectory show.
 std::vector<std::pair<std::int64_t, Pose>> posesOfImages(const MapMaterial& material);
 
-/// The reverse: the states of frames whose images were taken at the poses `images`, a trajectory of the material's
-/// pieces.
+/// The reverse, to the second order in the offset: the states of frames whose images were taken at the poses `images`,
+/// a trajectory of the material's pieces.
 std::vector<std::pair<std::int64_t, Pose>> posesOfStates(const MapMaterial& material,
                                                          const std::vector<std::pair<std::int64_t, Pose>>& images);
 
