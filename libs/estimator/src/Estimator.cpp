@@ -48,6 +48,11 @@ constexpr double kMostScaleSigma = 0.02;  // no prior takes points in before: it
 /// quarter of the solver's time and made the trajectory a few per cent better on average.
 constexpr double kSettledMove = 0.3;
 
+/// A start is solved to its minimum, next to undamped, and again with the frame after it, without the sightings that
+/// did not fit: what its frames say of biases and scale is what the first poses and their covariances are made of.
+constexpr int kStartIterations = 20;
+constexpr double kStartTolerance = 1e-5, kStartDamping = 1e-8;
+
 }  // namespace
 
 class Estimator::Impl {
@@ -249,7 +254,6 @@ void Estimator::Impl::initialise(WindowUpdate& update) {
   update.status = EstimatorStatus::kTracking;
   first_pose_ns_ = update.t_ns;
   startDrift(update);
-  while (static_cast<int>(window_.frames.size()) > params_.keyframes) dropOldest(update);
   fillPose(update);
 }
 
@@ -308,7 +312,7 @@ void Estimator::Impl::track(WindowUpdate& update) {
   update.blind = newest.blind;
   update.status = EstimatorStatus::kTracking;
   newest_covariance_ = sigma_->of(window_, window_.frames.back());
-  if (static_cast<int>(window_.frames.size()) > params_.keyframes) shrink(keyframe, update);
+  shrink(keyframe, update);
   fillPose(update);
 }
 
@@ -322,7 +326,9 @@ void Estimator::Impl::solve(WindowUpdate& update) {
   window_.noise_scales = {point_noise_.scale(), line_noise_.scale()};
   WindowFactors factors(window_, params_.factors);
   factors.addAll(params_, rig_.T_b_c);
-  const SolveLimits limits{params_.max_iterations, kSettledMove, true};
+  const SolveLimits limits = tracks_since_start_ == 0
+                                 ? SolveLimits{kStartIterations, kSettledMove, true, kStartTolerance, kStartDamping}
+                                 : SolveLimits{params_.max_iterations, kSettledMove, true};
   scale_drift_.beforeSolve(window_);
   SolveSummary solved = solveWindow(window_, factors.factors(), params_.calibration, limits);
   if (params_.factors.find_track_noise) {
@@ -359,8 +365,13 @@ void Estimator::Impl::repropagate() {
   }
 }
 
+/// The window of a start is larger: it loses a frame more with each that comes. A prior made of all of them at once
+/// would be linearised where biases and scale are hardly known.
 void Estimator::Impl::shrink(bool second_newest_is_keyframe, WindowUpdate& update) {
+  const auto isTooLarge = [this] { return static_cast<int>(window_.frames.size()) > params_.keyframes; };
+  if (!isTooLarge()) return;
   second_newest_is_keyframe ? dropOldest(update) : dropSecondNewest(update);
+  if (isTooLarge()) dropOldest(update);
 }
 
 void Estimator::Impl::dropOldest(WindowUpdate& update) {

@@ -65,6 +65,44 @@ TEST(Estimator, PointsThatLastInThePriorMakeItBetter) {
   EXPECT_LT(std::exp(log_ratio), 0.9);
 }
 
+TEST(Estimator, TheFramesOfAStartLeaveOneByOne) {
+  FigureParams gentle;
+  gentle.shake = 0;  // a start waits for its scale
+  const TrackedFlight flight = fly(ImuSimulatorParams{}, tracksFor(8, 0.4), FigureTrajectory(gentle));
+  std::size_t most = 0, of_the_start = 0;
+  bool started = false;
+  auto updates = run(flight);
+  updates.pop_back();  // finish()'s: all that are left
+  for (const WindowUpdate& update : updates) {
+    if (update.status == EstimatorStatus::kTracking && !started) of_the_start = update.keyframes.size();
+    started |= update.status == EstimatorStatus::kTracking;
+    most = std::max(most, update.keyframes.size());
+  }
+  EXPECT_TRUE(started);
+  EXPECT_EQ(of_the_start, 0U) << "none leaves when the first pose is found";
+  EXPECT_LE(most, 2U);
+}
+
+/// Steps that damping shortens would leave the bias where the start began, and frames that come would move it.
+TEST(Estimator, AStartIsSolvedToItsMinimum) {
+  double sum = 0;
+  constexpr int kSeeds = 8;
+  for (std::uint64_t seed = 1; seed <= kSeeds; ++seed) {
+    ImuSimulatorParams imu;
+    imu.seed = seed;
+    TrackSimulationParams tracks = tracksFor(5, 0.4);
+    tracks.seed = seed;
+    FigureParams gentle;
+    gentle.shake = 0;
+    std::vector<Eigen::Vector3d> biases;
+    for (const WindowUpdate& update : run(fly(imu, tracks, FigureTrajectory(gentle))))
+      if (update.status == EstimatorStatus::kTracking) biases.push_back(update.bias.gyro);
+    ASSERT_GT(biases.size(), 20U);
+    sum += (biases[3] - biases[0]).squaredNorm() / kSeeds;
+  }
+  EXPECT_LT(std::sqrt(sum), 4e-4) << "[rad/s], in the first three frames";
+}
+
 TEST(Estimator, NoPointLastsWhileTheStartIsOnTrial) {
   const TrackedFlight flight = fly(ImuSimulatorParams{}, tracksFor(8, 0.4));
   EstimatorParams none;

@@ -11,7 +11,7 @@ namespace lintel {
 namespace {
 
 // From Gauss-Newton to next to no step.
-constexpr double kFirstDamping = 1e-4, kLeastDamping = 1e-12, kMostDamping = 1e8;
+constexpr double kLeastDamping = 1e-12, kMostDamping = 1e8;
 constexpr double kLeastGain = 1e-3;  // of the decrease that the model promised
 
 }  // namespace
@@ -38,7 +38,7 @@ SolveSummary solveWindow(SlidingWindow& window, const std::vector<Factor>& facto
   SolveSummary summary;
   double cost = summary.initial_cost = system.linearise();
   summary.levels = system.levels();
-  double damping = kFirstDamping, raise = 2;
+  double damping = limits.first_damping, raise = 2;
   while (summary.iterations < limits.max_iterations && damping < kMostDamping) {
     ++summary.iterations;
     double moved_cost = cost, gain = 0;
@@ -55,7 +55,7 @@ SolveSummary solveWindow(SlidingWindow& window, const std::vector<Factor>& facto
       continue;
     }
     // A step that rejections have damped is short wherever the minimum lies.
-    const bool settled = damping <= kFirstDamping && system.statesMove() < limits.min_move;
+    const bool settled = damping <= limits.first_damping && system.statesMove() < limits.min_move;
     const bool converged = settled || cost - moved_cost < limits.tolerance * cost;
     cost = moved_cost;
     if (converged) break;

@@ -23,6 +23,9 @@ struct SolveLimits {
   /// Relative decrease of the cost by a step after which no other is worth it. The window's next frame goes on from
   /// here: with 1e-3 it takes a fifth more steps, and trajectories are no better.
   double tolerance = 3e-3;
+  /// Times the diagonal of the normal equations. It shortens steps along what is known a thousand times less well
+  /// together with the other states than by itself, as biases are: such states follow over many solves.
+  double first_damping = 1e-4;
 };
 
 /// Makes constants of what is not refined of the calibration.
