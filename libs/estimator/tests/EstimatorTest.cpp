@@ -13,6 +13,15 @@ namespace {
 
 using namespace test;
 
+/// A flight of 0.4 px of noise whose noise is drawn by `seed`.
+TrackedFlight flightOf(std::uint64_t seed, double duration_s, const FigureParams& figure = {}) {
+  ImuSimulatorParams imu;
+  imu.seed = seed;
+  TrackSimulationParams tracks = tracksFor(duration_s, 0.4);
+  tracks.seed = seed;
+  return fly(imu, tracks, FigureTrajectory(figure));
+}
+
 TEST(Estimator, FollowsAPerfectFlightToACentimetre) {
   const TrackedFlight flight = fly(perfectImu(), tracksFor(10, 0));
   const auto updates = run(flight, withoutCalibration());
@@ -52,11 +61,7 @@ TEST(Estimator, PointsThatLastInThePriorMakeItBetter) {
   double log_ratio = 0;
   constexpr int kSeeds = 4;
   for (std::uint64_t seed = 1; seed <= kSeeds; ++seed) {
-    ImuSimulatorParams imu;
-    imu.seed = seed;
-    TrackSimulationParams tracks = tracksFor(10, 0.4);
-    tracks.seed = seed;
-    const TrackedFlight flight = fly(imu, tracks);
+    const TrackedFlight flight = flightOf(seed, 10);
     EstimatorParams none;
     none.landmarks.lasting_points = 0;
     log_ratio += std::log(positionError(run(flight), flight) / positionError(run(flight, none), flight)) / kSeeds;
@@ -85,17 +90,13 @@ TEST(Estimator, TheFramesOfAStartLeaveOneByOne) {
 
 /// Steps that damping shortens would leave the bias where the start began, and frames that come would move it.
 TEST(Estimator, AStartIsSolvedToItsMinimum) {
+  FigureParams gentle;
+  gentle.shake = 0;
   double sum = 0;
   constexpr int kSeeds = 8;
   for (std::uint64_t seed = 1; seed <= kSeeds; ++seed) {
-    ImuSimulatorParams imu;
-    imu.seed = seed;
-    TrackSimulationParams tracks = tracksFor(5, 0.4);
-    tracks.seed = seed;
-    FigureParams gentle;
-    gentle.shake = 0;
     std::vector<Eigen::Vector3d> biases;
-    for (const WindowUpdate& update : run(fly(imu, tracks, FigureTrajectory(gentle))))
+    for (const WindowUpdate& update : run(flightOf(seed, 5, gentle)))
       if (update.status == EstimatorStatus::kTracking) biases.push_back(update.bias.gyro);
     ASSERT_GT(biases.size(), 20U);
     sum += (biases[3] - biases[0]).squaredNorm() / kSeeds;
