@@ -88,6 +88,16 @@ class Summing {
   SquaredErrorSummary sum_;
 };
 
+/// The true pose at a time between stamps: a quick turn is a milliradian away within half of 5 ms.
+Pose truthAt(std::int64_t t_ns, const StampedPoses& groundtruth, std::size_t nearest) {
+  const std::size_t from = groundtruth[nearest].first <= t_ns ? nearest : nearest - 1, to = from + 1;
+  if (groundtruth[nearest].first == t_ns || from >= groundtruth.size() || to >= groundtruth.size())
+    return groundtruth[nearest].second;
+  const auto& [before_ns, before] = groundtruth[from];
+  const auto& [after_ns, after] = groundtruth[to];
+  return interpolate(before, after, static_cast<double>(t_ns - before_ns) / static_cast<double>(after_ns - before_ns));
+}
+
 bool beginsPiece(const PoseCovariance& covariance) { return covariance.diagonal().head<3>().isZero(0); }
 
 }  // namespace
@@ -115,7 +125,8 @@ Consistency evaluateConsistency(const StampedPoses& estimate, const std::vector<
   std::size_t next = 0;
   for (const PosePair& pair : associate(estimate, groundtruth, params.max_difference_s)) {
     const auto& [t_ns, T_w_b] = estimate[pair.estimate];
-    const auto& [true_t_ns, true_T_w_b] = groundtruth[pair.groundtruth];
+    const std::int64_t true_t_ns = groundtruth[pair.groundtruth].first;
+    const Pose true_T_w_b = truthAt(t_ns, groundtruth, pair.groundtruth);
     for (; next <= pair.estimate; ++next)
       if (beginsPiece(covariances[next])) anchor.reset();
     if (!anchor) {

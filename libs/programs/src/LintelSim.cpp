@@ -94,6 +94,9 @@ class LintelSim {
         .oneOf({"none", "radial-tangential", "rational", "equidistant", "double-sphere", "eucm"})
         .showDefault();
     line_.option("--size", size_, "Size of the images, the width's field of view kept").type("WIDTHxHEIGHT");
+    line_.option("--zoom", params_.zoom, "Focal length; 2 = twice that of the lens: a narrower view")
+        .positive()
+        .showDefault();
     line_.option("--rate", params_.rate_hz, "Images a second").positive().showDefault();
     CameraSensorParams& camera = params_.camera;
     const auto number = [this](const char* name, double& value, const char* help) {

@@ -50,6 +50,9 @@ Rig rigOf(const SimulationParams& params) {
     throw std::invalid_argument("the lens " + params.lens + " is not known");
   }
   if (params.width > 0) resize(rig.camera, params.width, params.height);
+  if (!(params.zoom >= 0.2 && params.zoom <= 20)) throw std::invalid_argument("the zoom is 0.2 to 20");
+  rig.camera.fx *= params.zoom;
+  rig.camera.fy *= params.zoom;
   if (!(params.rate_hz >= 1 && params.rate_hz <= rig.imu_rate_hz))
     throw std::invalid_argument("images come at 1 to " + std::to_string(std::lround(rig.imu_rate_hz)) + " Hz");
   rig.camera_rate_hz = params.rate_hz;

@@ -3,8 +3,11 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <fstream>
+#include <opencv2/imgcodecs.hpp>
+#include <opencv2/imgproc.hpp>
 #include <sstream>
 
 #include "lintel/evaluation/TrajectoryFile.h"
@@ -131,8 +134,33 @@ TEST_F(SimulationTest, FaultsAreWhatWasAskedFor) {
   EXPECT_LT(wrong_px, 1);
 }
 
+TEST_F(SimulationTest, ZoomedImagesShowTheMiddleLarger) {
+  SimulationParams params = quick();
+  params.lens = "none";
+  const auto imageOf = [](const std::string& folder) {
+    const fs::directory_iterator images(fs::path(folder) / "mav0/cam0/data");
+    std::vector<fs::path> paths(begin(images), end(images));
+    return cv::imread(std::min_element(paths.begin(), paths.end())->string(), cv::IMREAD_GRAYSCALE);
+  };
+  const cv::Mat wide = imageOf(write("wide", params));
+  params.zoom = 2;
+  const std::string folder = write("zoomed", params);
+  const cv::Mat zoomed = imageOf(folder);
+  const Camera camera = openRecording(folder)->rig().camera;
+  EXPECT_NEAR(camera.fx, 2 * eurocRig().camera.fx, 1e-3);
+  // what is at half the distance from the principal point of the one is in the other
+  const cv::Matx23d larger{2, 0, -camera.cx, 0, 2, -camera.cy};
+  cv::Mat expected;
+  cv::warpAffine(wide, expected, larger, wide.size());
+  const double apart = cv::norm(expected, zoomed, cv::NORM_L1), unlike = cv::norm(wide, zoomed, cv::NORM_L1);
+  EXPECT_LT(apart, 0.3 * unlike);
+}
+
 TEST_F(SimulationTest, ImpossibleRequestsAreRefused) {
   SimulationParams params = quick();
+  params.zoom = 0.1;
+  EXPECT_THROW(Simulation{params}, std::invalid_argument);
+  params = quick();
   params.scene = "cellar";
   EXPECT_THROW(Simulation{params}, std::invalid_argument);
   params = quick();

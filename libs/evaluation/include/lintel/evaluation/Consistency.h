@@ -29,7 +29,8 @@ struct SigmaSample {
 };
 
 /// Whether a trajectory's covariances are true. They are relative to the first pose, so the estimate is laid on the
-/// truth by position and yaw there; anew in each piece: a row whose position has no variance begins one.
+/// truth by position and yaw there; anew in each piece: a row whose position has no variance begins one. The truth is
+/// interpolated to the estimate's times.
 struct Consistency {
   std::size_t poses = 0, pieces = 0;
   SquaredErrorSummary position, yaw, roll_pitch;

@@ -31,6 +31,7 @@ struct SimulationParams {
   int threads = 1;
   std::string lens = "radial-tangential";  ///< none, or a name of LensNames.h
   int width = 0, height = 0;               ///< of the images, the width's field of view kept; 0: 752 x 480
+  double zoom = 1;                         ///< focal length over that of the lens
   double rate_hz = 20;                     ///< of the images
   ImuSimulatorParams imu;                  ///< its seed is derived from `seed`
   CameraSensorParams camera;               ///< its seed is derived from `seed`
