@@ -52,7 +52,7 @@ class NoiseMeter {
 /// - white noise: as given, where it lies between what sensors can do and three times what was measured at the
 ///   quietest (a filter in the sensor may hide as much); as measured where it is white and more than given;
 /// - vibration: periodic, so that most of it integrates to nothing; 0.3 of the gyroscope's and 0.15 of the
-///   accelerometer's stay (by what samples of flights are wrong by, doc/benchmarks.md);
+///   accelerometer's stay (by what samples of flights are wrong by, doc/benchmarks/imu_noise.md);
 /// - what calibration leaves in scale and alignment of a MEMS sensor's axes, 0.2 % of the motion, lasting a second;
 /// - the accelerometer's correlated noise: 2.5 sqrt(Hz) times the density of these two (measured as the shares were).
 /// Walks are given bounds of what sensors do.
