@@ -89,6 +89,7 @@ class Estimator::Impl {
   void addFrame(const FrameTracks& tracks);
   void remember(const FrameTracks& tracks);
   void initialise(WindowUpdate& update);
+  std::string tryStart(SlidingWindow& buffer) const;
   void shortenBuffer();
   void startDrift(WindowUpdate& update);
   void track(WindowUpdate& update);
@@ -231,14 +232,17 @@ void Estimator::Impl::initialise(WindowUpdate& update) {
     update.reason = tries_.reason();
     return;
   }
+  const bool full = static_cast<int>(window_.frames.size()) >= params_.initializer.max_frames;
   SlidingWindow buffer = window_;
-  buffer.stamp_sigma_s = stampJitter_s();
-  buffer.frames.front().imu.reset();
-  update.reason = initializer_.initialise(buffer);
+  update.reason = tryStart(buffer);
   if (update.reason == kBiasImplausible) initializer_.expectLargerBias();
+  if (full && tries_.mayBeShorter() && !update.reason.empty() && update.reason != kScaleUnknown) {
+    buffer = newestHalf(window_);
+    if (tryStart(buffer).empty()) update.reason.clear();
+  }
   if (!update.reason.empty()) {
-    if (static_cast<int>(buffer.frames.size()) < params_.initializer.max_frames) return;
-    return tries_.failed(update.reason);
+    if (full) tries_.failed(update.reason);
+    return;
   }
   window_ = std::move(buffer);
   tries_.reset();
@@ -255,6 +259,13 @@ void Estimator::Impl::initialise(WindowUpdate& update) {
   first_pose_ns_ = update.t_ns;
   startDrift(update);
   fillPose(update);
+}
+
+/// Makes a buffer a start; what it lacks, where it is none.
+std::string Estimator::Impl::tryStart(SlidingWindow& buffer) const {
+  buffer.stamp_sigma_s = stampJitter_s();
+  buffer.frames.front().imu.reset();
+  return initializer_.initialise(buffer);
 }
 
 /// Makes room in a full buffer. A frame that is left out between others has its pose from the IMU if it is replaced.

@@ -98,6 +98,30 @@ TEST(EstimatorInterruption, ABufferThatDoesNotShowTheScaleBecomesLonger) {
   EXPECT_NEAR(alignPositions(AlignmentKind::kSim3, estimate, truth).scale, 1, 0.08);
 }
 
+/// Tracks that follow nothing in space fill the buffer for five seconds; then they are good.
+TEST(EstimatorInterruption, AStartIsMadeOfTheNewestFramesWhereTheOldestAreOfNoUse) {
+  TrackedFlight flight = fly(ImuSimulatorParams{}, tracksFor(9, 0.3));
+  constexpr std::size_t kGood = 100;
+  for (std::size_t k = 0; k < kGood; ++k) {
+    FrameTracks& tracks = flight.sim.frames[k].tracks;
+    tracks.lines.clear();
+    for (PointObservation& point : tracks.points) {
+      const double turn = 2.4 * static_cast<double>(k + 7 * point.id);
+      point.px += 40 * Eigen::Vector2d(std::cos(turn), std::sin(turn));
+      point.ray = flight.rig.camera.ray(point.px);
+      point.id += 1000000;
+    }
+  }
+  EstimatorParams params = withoutCalibration();
+  params.initializer.max_frames = 24;
+  const auto updates = run(flight, params);
+  std::size_t first = 0;
+  while (first < updates.size() && !updates[first].hasPose()) ++first;
+  EXPECT_GE(first, kGood);
+  EXPECT_LT(first, kGood + 30);
+  EXPECT_LT(positionError(updates, flight), 0.05);
+}
+
 TEST(EstimatorInterruption, PureRotationGivesNoPoseRatherThanAWrongOne) {
   FigureParams turning;
   turning.translation = 0;

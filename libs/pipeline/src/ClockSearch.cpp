@@ -17,7 +17,8 @@ constexpr double kLongest_s = 5;  // of turning; and the tracks that are compare
 constexpr double kFirstTry_s = 1.5, kTryGrowth = 1.5, kTriesApart_s = 2.5;
 constexpr double kNewTurning_s = 0.3;  // since the last try, for another one
 constexpr double kImuBefore_s = 2 * kLargestClockOffset_s;
-constexpr double kGoodSigma_s = 0.004;
+constexpr double kGoodSigma_s = 0.004;     // found before kLongest_s, ends the search
+constexpr double kUsableSigma_s = 0.008;   // later: a quick turn moves points by some pixels in that time
 constexpr double kRightShare = 0.5;        // of recordings, whose stamps are right
 constexpr double kLeastTurn_rad_s = 0.03;  // slower turns show the offset to tens of milliseconds only
 constexpr std::size_t kMostHeld_bytes = std::size_t{1} << 29;  // of images while the camera is still
@@ -41,15 +42,11 @@ void eraseBefore(std::int64_t t_ns, std::vector<Item>& items) {
 void weigh(double stamp_sigma_s, ClockSearch& search) {
   search.sigma_s = stamp_sigma_s;
   if (!search.clock.determined) return;
-  const double found_s = search.clock.offset_s, variance = search.clock.sigma_s * search.clock.sigma_s,
-               stamp_variance = stamp_sigma_s * stamp_sigma_s;
-  const double right = kRightShare * normalDensity(found_s, std::sqrt(variance + stamp_variance)),
+  const double found_s = search.clock.offset_s,
+               right = kRightShare * normalDensity(found_s, std::hypot(search.clock.sigma_s, stamp_sigma_s)),
                wrong = (1 - kRightShare) / (2 * kLargestClockOffset_s), share = right / (right + wrong);
   if (share > kSureShare) return;
-  const double near_s = found_s * stamp_variance / (variance + stamp_variance),
-               near_sigma_s = std::sqrt(variance * stamp_variance / (variance + stamp_variance));
-  std::tie(search.offset_s, search.sigma_s) =
-      likelierAndSigma(share, near_s, near_sigma_s, found_s, search.clock.sigma_s);
+  std::tie(search.offset_s, search.sigma_s) = likelierAndSigma(share, 0, stamp_sigma_s, found_s, search.clock.sigma_s);
 }
 
 /// The tracks of the last kLongest_s, and the IMU samples around them.
@@ -99,7 +96,8 @@ ClockSearch searchClock(TrackingStage& tracking, const Rig& rig, double stamp_si
         search.clock = clock;
       tried_s = t_s;
     }
-    if (search.clock.determined && !parts_grew && (t_s >= kLongest_s || search.clock.sigma_s < kGoodSigma_s)) break;
+    const double enough_s = t_s >= kLongest_s ? kUsableSigma_s : kGoodSigma_s;
+    if (search.clock.determined && !parts_grew && search.clock.sigma_s < enough_s) break;
     if (t_s >= kLongest_s && (turning_s >= kLongest_s || held_bytes > kMostHeld_bytes)) break;
   }
   weigh(stamp_sigma_s, search);

@@ -11,7 +11,8 @@
 namespace lintel {
 
 /// Predicts how the camera turned between two frames from the gyroscope. Its bias (up to 0.1 rad/s, more than 2 px a
-/// frame) is estimated from the motion of the points.
+/// frame) and how much later than its stamp an image shows the world (up to 0.1 s) are estimated from the motion of the
+/// points.
 class GyroPrediction {
  public:
   GyroPrediction(const Rig& rig, double initial_bias_sigma);
@@ -42,9 +43,16 @@ class GyroPrediction {
   const Eigen::Vector3d& bias() const { return bias_; }
 
  private:
+  using Sensitivity = Eigen::Matrix<double, 3, 4>;
+
+  /// By how much the prediction turns when bias and delay become larger (camera frame c1).
+  Sensitivity sensitivity() const;
+
   Eigen::Quaterniond R_b_c_;
   Eigen::Vector3d bias_ = Eigen::Vector3d::Zero();
-  Eigen::Matrix3d bias_information_;
+  double delay_s_ = 0;                                       ///< of images
+  Eigen::Matrix4d prior_, information_;                      ///< of bias and delay
+  Eigen::Vector3d rate_change_b_ = Eigen::Vector3d::Zero();  ///< over the step, in the body's frame at its end [rad/s]
   Eigen::Quaterniond R_c1_c0_ = Eigen::Quaterniond::Identity();
   Eigen::Vector3d rate_c_ = Eigen::Vector3d::Zero();  ///< rotation vector of R_c1_c0 per second
   double dt_s_ = 0;

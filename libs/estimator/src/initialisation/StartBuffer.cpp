@@ -33,4 +33,9 @@ void leaveOut(std::size_t k, SlidingWindow& buffer) {
   buffer.removeFrame(leaving, false);
 }
 
+SlidingWindow newestHalf(SlidingWindow buffer) {
+  for (std::size_t n = buffer.frames.size() / 2; n > 0; --n) leaveOut(0, buffer);
+  return buffer;
+}
+
 }  // namespace lintel

@@ -15,4 +15,7 @@ std::size_t frameToThinOut(const SlidingWindow& buffer);
 /// are joined.
 void leaveOut(std::size_t k, SlidingWindow& buffer);
 
+/// A buffer without the older half of its frames: where tracks are short its ends have nothing in common.
+SlidingWindow newestHalf(SlidingWindow buffer);
+
 }  // namespace lintel

@@ -24,6 +24,7 @@ bool StartTries::due() {
 void StartTries::failed(const std::string& reason) {
   reason_ = reason;
   for_scale_ = reason == kScaleUnknown;
+  in_vain_ = for_scale_ ? 0 : in_vain_ + 1;
   if (!for_scale_) waited_for_scale_ = 0;
   frames_to_wait_ = std::max(kBetweenTries, static_cast<int>(kApart * waited_for_scale_));
 }

@@ -47,5 +47,16 @@ TEST(StartBuffer, LosesItsFirstFrameWhenItIsLongEnough) {
   EXPECT_EQ(window.frames.front().imu, nullptr) << "what was before is not in the buffer";
 }
 
+TEST(StartBuffer, ItsNewestHalfIsABufferOfItsOwn) {
+  const SlidingWindow whole = buffer(7);
+  const SlidingWindow half = newestHalf(whole);
+  ASSERT_EQ(half.frames.size(), 4u);
+  for (std::size_t k = 0; k < 4; ++k) EXPECT_EQ(half.frames[k].id, whole.frames[k + 3].id);
+  EXPECT_EQ(half.frames.front().imu, nullptr);
+  EXPECT_EQ(half.frames[1].imu->dt_s(), whole.frames[4].imu->dt_s());
+  for (const auto& [id, track] : half.points)
+    for (const PointSighting& s : track.sightings) EXPECT_TRUE(half.contains(s.frame)) << "point " << id;
+}
+
 }  // namespace
 }  // namespace lintel

@@ -46,6 +46,16 @@ TEST(StartTries, AnotherReasonEndsTheWaitForTheScale) {
   EXPECT_EQ(triesIn(50, "waiting for parallax", tries), 10);
 }
 
+TEST(StartTries, AFullBufferInVainMayBeShorter) {
+  StartTries tries;
+  triesIn(15, "waiting for parallax", tries);
+  EXPECT_FALSE(tries.mayBeShorter());
+  triesIn(5, "too few points agree with the motion", tries);
+  EXPECT_TRUE(tries.mayBeShorter());
+  tries.failed(kScaleUnknown);
+  EXPECT_FALSE(tries.mayBeShorter()) << "a shorter one knows it less";
+}
+
 TEST(StartTries, AfterAWrongStartSomeFramesAreWaitedFor) {
   StartTries tries;
   tries.startWasWrong();
