@@ -17,9 +17,13 @@ constexpr double kLongest_s = 5;  // of turning; and the tracks that are compare
 constexpr double kFirstTry_s = 1.5, kTryGrowth = 1.5, kTriesApart_s = 2.5;
 constexpr double kNewTurning_s = 0.3;  // since the last try, for another one
 constexpr double kImuBefore_s = 2 * kLargestClockOffset_s;
-constexpr double kGoodSigma_s = 0.004;     // found before kLongest_s, ends the search
-constexpr double kUsableSigma_s = 0.008;   // later: a quick turn moves points by some pixels in that time
-constexpr double kRightShare = 0.5;        // of recordings, whose stamps are right
+constexpr double kGoodSigma_s = 0.004;    // found before kLongest_s, ends the search
+constexpr double kUsableSigma_s = 0.008;  // later: a quick turn moves points by some pixels in that time
+constexpr double kRightShare = 0.5;       // of recordings, whose stamps are right
+// Of the search's standard deviation: it counts errors as shared by all points of two images, and by pairs that
+// overlap.
+constexpr double kErrorShare = 0.5;
+constexpr double kTypicalOffset_s = 0.02;  // of the others: exposure, readout, transfer
 constexpr double kLeastTurn_rad_s = 0.03;  // slower turns show the offset to tens of milliseconds only
 constexpr std::size_t kMostHeld_bytes = std::size_t{1} << 29;  // of images while the camera is still
 
@@ -37,14 +41,15 @@ void eraseBefore(std::int64_t t_ns, std::vector<Item>& items) {
   items.erase(items.begin(), std::find_if_not(items.begin(), items.end(), earlier));
 }
 
-/// What is known of the offset after the search: the stamps are right to `stamp_sigma_s`, or any offset within the
-/// range is as likely as another. The likelier of both is taken, with a standard deviation that covers the other.
+/// What is known of the offset after the search: the stamps are right to `stamp_sigma_s`, or off by some tens of
+/// milliseconds. The likelier of both is taken, with a standard deviation that covers the other.
 void weigh(double stamp_sigma_s, ClockSearch& search) {
   search.sigma_s = stamp_sigma_s;
   if (!search.clock.determined) return;
-  const double found_s = search.clock.offset_s,
-               right = kRightShare * normalDensity(found_s, std::hypot(search.clock.sigma_s, stamp_sigma_s)),
-               wrong = (1 - kRightShare) / (2 * kLargestClockOffset_s), share = right / (right + wrong);
+  const double found_s = search.clock.offset_s, error_s = std::hypot(kErrorShare * search.clock.sigma_s, stamp_sigma_s),
+               right = kRightShare * normalDensity(found_s, error_s),
+               wrong = (1 - kRightShare) * std::exp(-std::abs(found_s) / kTypicalOffset_s) / (2 * kTypicalOffset_s),
+               share = right / (right + wrong);
   if (share > kSureShare) return;
   std::tie(search.offset_s, search.sigma_s) = likelierAndSigma(share, 0, stamp_sigma_s, found_s, search.clock.sigma_s);
 }

@@ -87,6 +87,16 @@ TEST(ClockSearch, LeavesGoodStampsAlone) {
   EXPECT_LT(search.frames.size(), 60u) << "it ends when it knows";
 }
 
+/// Cameras without a trigger are usually some milliseconds off, not anything up to a tenth of a second.
+TEST(ClockSearch, CorrectsASmallOffsetToo) {
+  TurningRecording recording(0.0065, 0.2);
+  OdometryResult result;
+  TrackingStage tracking(recording, points(), result);
+  const ClockSearch search = searchClock(tracking, recording.rig(), kStampSigma_s);
+  EXPECT_NEAR(search.offset_s, 0.0065, 0.002);
+  EXPECT_LT(search.sigma_s, 0.004);
+}
+
 /// A recording usually begins with a camera that lies still, which shows nothing.
 TEST(ClockSearch, WaitsForTheFirstTurn) {
   TurningRecording recording(0.05, 1, 260, "", 8);
