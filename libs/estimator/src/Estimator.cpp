@@ -111,7 +111,6 @@ class Estimator::Impl {
 
   Rig rig_;
   EstimatorParams params_;
-  bool scale_known_ = false;  // once since the start
   WindowNoise noise_;
   RestDetection rest_;
   Initializer initializer_;
@@ -250,7 +249,7 @@ void Estimator::Impl::initialise(WindowUpdate& update) {
   moveToAnchor();
   tracking_ = true;
   blind_frames_ = tracks_since_start_ = 0;
-  scale_known_ = false;
+  window_.scale_known = false;
   unroll(window_);
   solve(update);
   addIntervals(window_, 1, stamp_jitter_);
@@ -338,7 +337,7 @@ void Estimator::Impl::solve(WindowUpdate& update) {
   countStampJitter(window_.stamp_sigma_s, window_);
   window_.noise_scales = {point_noise_.scale(), line_noise_.scale()};
   WindowFactors factors(window_, params_.factors);
-  factors.addAll(params_, rig_.T_b_c, scale_known_);
+  factors.addAll(params_, rig_.T_b_c);
   const SolveLimits limits = tracks_since_start_ == 0
                                  ? SolveLimits{kStartIterations, kSettledMove, true, kStartTolerance, kStartDamping}
                                  : SolveLimits{params_.max_iterations, kSettledMove, true};
@@ -392,7 +391,7 @@ void Estimator::Impl::dropOldest(WindowUpdate& update) {
   sigma_->holdNext(window_);
   EstimatorParams params = params_;
   const double scale_sigma = sigma_->relativeScaleSigma(window_);
-  scale_known_ |= scale_sigma < kMostScaleSigma;
+  window_.scale_known |= scale_sigma < kMostScaleSigma;
   if (onTrial() || scale_sigma > kMostScaleSigma)
     params.landmarks.lasting_points = 0;  // they would be linearised at a wrong scale
   marginaliseOldest(window_, params, scale_drift_.takeUnexplainedChange(scale_sigma));

@@ -93,7 +93,7 @@ void GyroPrediction::correct(const Eigen::Vector3d& delta, const Eigen::Matrix3d
   const Eigen::Matrix3d seen =
       (information.inverse() + kRotationNoise_rad * kRotationNoise_rad * Eigen::Matrix3d::Identity()).inverse();
   const Sensitivity J = sensitivity();
-  // the delay does not walk, but what is known of it need not grow without limit either
+  // what images said is forgotten, the prior is not
   information_ = kForget * information_ + (1 - kForget) * prior_ + J.transpose() * seen * J;
   const Eigen::Vector4d change = information_.inverse() * (J.transpose() * (seen * delta));
   bias_ += change.head<3>();

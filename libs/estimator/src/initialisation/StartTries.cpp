@@ -10,6 +10,7 @@ namespace lintel {
 namespace {
 
 constexpr int kBetweenTries = 4, kAfterWrongStart = 5;  // window frames
+constexpr int kInVain = 4;                              // tries: two seconds
 constexpr double kApart = 0.1;                          // of the wait for the scale
 
 }  // namespace
@@ -28,6 +29,8 @@ void StartTries::failed(const std::string& reason) {
   if (!for_scale_) waited_for_scale_ = 0;
   frames_to_wait_ = std::max(kBetweenTries, static_cast<int>(kApart * waited_for_scale_));
 }
+
+bool StartTries::mayBeShorter() const { return in_vain_ >= kInVain; }
 
 void StartTries::startWasWrong() {
   reset();

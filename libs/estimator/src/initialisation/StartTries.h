@@ -25,11 +25,9 @@ class StartTries {
   bool forScale() const { return for_scale_; }           ///< all that the last try lacked
 
   /// Full buffers have been given up for a while, and not for the scale: fewer frames may do.
-  bool mayBeShorter() const { return in_vain_ >= kInVain; }
+  bool mayBeShorter() const;
 
  private:
-  static constexpr int kInVain = 4;
-
   int frames_to_wait_ = 0, waited_for_scale_ = 0, in_vain_ = 0;
   bool for_scale_ = false;
   std::string reason_;

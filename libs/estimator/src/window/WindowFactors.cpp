@@ -40,10 +40,10 @@ WindowFactors::WindowFactors(const SlidingWindow& window, const FactorParams& pa
   for (const WindowFrame& frame : window.frames) motions_[frame.id] = frame.bodyMotion();
 }
 
-void WindowFactors::addAll(const EstimatorParams& params, const Pose& T_b_c_calibrated, bool scale_known) {
+void WindowFactors::addAll(const EstimatorParams& params, const Pose& T_b_c_calibrated) {
   addPriors();
   addGauge();
-  addCalibrationPriors(params.calibration, T_b_c_calibrated, scale_known);
+  addCalibrationPriors(params.calibration, T_b_c_calibrated);
   addAxesPrior(params.calibration);
   addMeasurements(params);
 }
@@ -65,16 +65,15 @@ void WindowFactors::addPriors() {
   for (const WindowPrior& prior : window_.priors) factors_.push_back({prior.factor.get(), nullptr, prior.blocks});
 }
 
-void WindowFactors::addCalibrationPriors(const CalibrationParams& params, const Pose& T_b_c_calibrated,
-                                         bool scale_known) {
+void WindowFactors::addCalibrationPriors(const CalibrationParams& params, const Pose& T_b_c_calibrated) {
   calibration_loss_ = std::make_unique<ceres::CauchyLoss>(params.loss_width);
-  const auto addParts = [&](PriorParts parts, BlockKey::Kind kind, std::size_t first_with_loss) {
-    for (std::size_t i = 0; i < parts.size(); ++i)
-      if (parts[i].refined)
-        add(std::move(parts[i].factor), {{kind, 0}}, i < first_with_loss ? nullptr : calibration_loss_.get());
+  const auto addPart = [&](PriorPart& part, BlockKey::Kind kind, const ceres::LossFunction* loss) {
+    if (part.refined) add(std::move(part.factor), {{kind, 0}}, loss);
   };
-  addParts(makeExtrinsicsPriors(params, T_b_c_calibrated), BlockKey::kExtrinsics, scale_known ? 0 : 1);
-  addParts(makeCorrectionPriors(params), BlockKey::kCorrection, 0);
+  PriorParts extrinsics = makeExtrinsicsPriors(params, T_b_c_calibrated);
+  addPart(extrinsics[0], BlockKey::kExtrinsics, window_.scale_known ? calibration_loss_.get() : nullptr);
+  addPart(extrinsics[1], BlockKey::kExtrinsics, calibration_loss_.get());
+  for (PriorPart& part : makeCorrectionPriors(params)) addPart(part, BlockKey::kCorrection, calibration_loss_.get());
 }
 
 void WindowFactors::addAxesPrior(const CalibrationParams& params) {

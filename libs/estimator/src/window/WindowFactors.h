@@ -25,7 +25,7 @@ class WindowFactors {
   WindowFactors(const SlidingWindow& window, FactorParams&& params) = delete;  // keeps a reference
 
   /// All that is known: priors, gauge, calibration, measurements.
-  void addAll(const EstimatorParams& params, const Pose& T_b_c_calibrated, bool scale_known = true);
+  void addAll(const EstimatorParams& params, const Pose& T_b_c_calibrated);
 
   /// What was measured: IMU, rest, points, lines. These go into a prior when a frame leaves that they touch; a new kind
   /// of residual is added here.
@@ -34,7 +34,7 @@ class WindowFactors {
   void addPriors();
   /// Of what is refined; the solver holds the rest (holdCalibration). They have a robust loss, the lever arm's once the
   /// scale is known: before, as at a take-off, one that leaves its prior explains as much as another scale does.
-  void addCalibrationPriors(const CalibrationParams& params, const Pose& T_b_c_calibrated, bool scale_known = true);
+  void addCalibrationPriors(const CalibrationParams& params, const Pose& T_b_c_calibrated);
   /// Ties position and yaw of the oldest frame to what they are: the four directions that no measurement sees. Without
   /// it a solve may turn the whole window, and the causal trajectory would jump. Never marginalised.
   void addGauge();

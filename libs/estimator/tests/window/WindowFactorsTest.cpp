@@ -14,10 +14,11 @@ using namespace test;
 /// Cost of extrinsics that are not as calibrated, twenty standard deviations off in each axis of one of both parts.
 double costOff(bool lever_arm, bool scale_known) {
   const Rig rig = eurocRig();
-  const SlidingWindow window(rig);
+  SlidingWindow window(rig);
+  window.scale_known = scale_known;
   const EstimatorParams params;
   WindowFactors factors(window, params.factors);
-  factors.addCalibrationPriors(params.calibration, rig.T_b_c, scale_known);
+  factors.addCalibrationPriors(params.calibration, rig.T_b_c);
   Pose off = rig.T_b_c;
   if (lever_arm)
     off.p += 20 * params.calibration.extrinsic_translation_sigma_m * Eigen::Vector3d::Ones();

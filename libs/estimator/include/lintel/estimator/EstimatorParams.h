@@ -64,7 +64,7 @@ struct CalibrationParams {
   double axes_angle_sigma_rad = 0.0025;
   double gyro_axes_scale_sigma = 0.001;
   double gyro_axes_angle_sigma_rad = 0.001;
-  double loss_width = 3;  ///< Cauchy width of each part's prior, in standard deviations
+  double loss_width = 3;  ///< Cauchy width of each part's prior [standard deviations]; calibration.md says from when on
 
   template <class F>
   void fields(F&& field) {

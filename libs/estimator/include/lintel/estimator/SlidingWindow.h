@@ -151,6 +151,7 @@ class SlidingWindow {
   std::map<TrackId, LineTrack> lines;
   double stamp_sigma_s = 0;  ///< by how much the images' stamps are off, as far as it is known (StampJitter.h)
   NoiseScales noise_scales;  ///< as far as they are known (NoiseScale.h)
+  bool scale_known = true;   ///< to 2 %, at some time since the start
   std::map<std::uint64_t, SharedDirection> directions;  ///< of groups of parallel lines; ids from 1
   std::uint64_t next_direction = 1;
   PoseBlock extrinsics;  ///< T_b_c
