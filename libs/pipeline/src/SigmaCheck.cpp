@@ -10,8 +10,10 @@ namespace lintel {
 
 namespace {
 
-// The scale of a start may be unknown to a tenth. Runs that last have at most 0.4 of this.
-constexpr double kShareOfWay = 0.1, kAllowed_m = 0.1;
+// The scale of a start may be unknown to a tenth. Beside that a position may be unknown by 0.1 m, or, as from a drone
+// at 50 m, by as much at the points' distance as 0.1 m are at 5 m: nine pixels of EuRoC's camera. Runs that last have
+// at most 0.4 of all.
+constexpr double kShareOfWay = 0.1, kAllowed_m = 0.1, kShareOfDistance = 0.02;
 
 }  // namespace
 
@@ -24,7 +26,8 @@ void SigmaCheck::add(const WindowUpdate& update) {
     if (!now.blind && !last_->blind) gained_ += std::max(0.0, now.variance - last_->variance);
   }
   last_ = now;
-  const double sigma_m = std::sqrt(gained_), share = sigma_m / (kShareOfWay * way_m_ + kAllowed_m);
+  const double allowed_m = kShareOfWay * way_m_ + std::max(kAllowed_m, kShareOfDistance * update.points_distance_m);
+  const double sigma_m = std::sqrt(gained_), share = sigma_m / allowed_m;
   if (share <= worst_) return;
   worst_ = share;
   worst_sigma_m_ = sigma_m;

@@ -15,8 +15,8 @@ class SigmaCheck {
  public:
   void add(const WindowUpdate& update);
 
-  /// The largest standard deviation of a position, over what is allowed after the way until there; without what is
-  /// gained while the images show nothing, which is said elsewhere.
+  /// The largest standard deviation of a position, over what is allowed after the way until there and for the distance
+  /// of what is seen; without what is gained while the images show nothing, which is said elsewhere.
   double worst() const { return worst_; }
 
   /// How far positions are unknown; empty: not too far.

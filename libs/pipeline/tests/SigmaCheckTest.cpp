@@ -32,6 +32,19 @@ TEST(SigmaCheck, MoreIsAFaultThatSaysHowMuch) {
   EXPECT_THAT(check.fault(), HasSubstr("after a way of 10.0 m the position is unknown by 2.0 m"));
 }
 
+TEST(SigmaCheck, MoreIsAllowedWhereWhatIsSeenIsFarAway) {
+  const auto faultAt = [](double distance_m) {
+    SigmaCheck check;
+    WindowUpdate start = poseAt(0, 0), soon = poseAt(5, 0.3);
+    start.points_distance_m = soon.points_distance_m = distance_m;
+    check.add(start);
+    check.add(soon);
+    return check.fault();
+  };
+  EXPECT_THAT(faultAt(5), HasSubstr("after a way of 0.5 m the position is unknown by 0.3 m"));
+  EXPECT_EQ(faultAt(50), "");
+}
+
 TEST(SigmaCheck, WhatIsGainedInDarknessIsSaidElsewhere) {
   SigmaCheck check;
   for (int k = 0; k <= 100; ++k) check.add(poseAt(k, k < 50 ? 0.01 : 0.02 * k, k >= 50 && k < 100));

@@ -1,13 +1,21 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "window/LandmarkCounts.h"
 
+#include <vector>
+
 #include "landmarks/LineDegeneracy.h"
+#include "lintel/core/Quantiles.h"
 
 namespace lintel {
 
 void countLandmarks(const SlidingWindow& window, const DegeneracyParams& params, WindowUpdate& update) {
-  const FrameId newest = window.frames.back().id;
-  for (const auto& [id, track] : window.points) update.points_used += track.triangulated;
+  const WindowFrame& frame = window.frames.back();
+  const FrameId newest = frame.id;
+  std::vector<double> distances_m;
+  for (const auto& [id, track] : window.points)
+    if (track.triangulated) distances_m.push_back((window.positionOf(track) - frame.T_w_b().p).norm());
+  update.points_used += static_cast<int>(distances_m.size());
+  update.points_distance_m = distances_m.empty() ? 0 : upperMedian(distances_m);
   for (const auto& [id, track] : window.lines) {
     const bool enters = entersProblem(track, params);
     update.lines_tracked += !track.sightings.empty() && track.sightings.back().frame == newest;

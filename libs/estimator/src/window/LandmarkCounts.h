@@ -7,7 +7,7 @@
 
 namespace lintel {
 
-/// How many points and lines the window has, by what became of them.
+/// How many points and lines the window has, by what became of them; how far away the points are.
 void countLandmarks(const SlidingWindow& window, const DegeneracyParams& params, WindowUpdate& update);
 
 }  // namespace lintel

@@ -34,13 +34,30 @@ TEST(PointTriangulation, IsExactWithoutNoise) {
   EXPECT_NEAR(reprojectionError(window, track), 0, 1e-6);
 }
 
-TEST(PointTriangulation, SigmaIsThatOfASingleBaseline) {
+TEST(PointTriangulation, SigmaIsThatOfBothRaysOfASingleBaseline) {
   SlidingWindow window = windowAt({at(0, 0, 0), at(0.5, 0, 0)});
   const Eigen::Vector3d p_w(0.2, 0.1, 4);
   for (FrameId k = 0; k < 2; ++k) seePoint(window, 1, k, p_w);
   ASSERT_TRUE(triangulatePoint(window, kLandmarks, 0.8, window.points[1]));
-  // u = f (x - b lambda): d u / d lambda = f b
-  EXPECT_NEAR(window.points[1].sigma_inverse_depth, 0.8 / (500 * 0.5), 1e-9);
+  // u1 - u0 = -f b lambda
+  EXPECT_NEAR(window.points[1].sigma_inverse_depth, std::sqrt(2.0) * 0.8 / (500 * 0.5), 1e-9);
+}
+
+TEST(PointTriangulation, SigmaIsThatOfAStraightLineThroughTheSightings) {
+  SlidingWindow window = windowAt({at(0, 0, 0), at(0.5, 0, 0), at(1, 0, 0), at(1.5, 0, 0)});
+  for (FrameId k = 0; k < 4; ++k) seePoint(window, 1, k, {0.2, 0.1, 4});
+  ASSERT_TRUE(triangulatePoint(window, kLandmarks, 0.8, window.points[1]));
+  // u_k = u - f b_k lambda, u unknown: the squared distances of 0, 1, 2, 3 from their mean sum to 5
+  EXPECT_NEAR(window.points[1].sigma_inverse_depth, 0.8 / (500 * 0.5 * std::sqrt(5.0)), 1e-9);
+}
+
+TEST(PointTriangulation, TheNoiseOfOneSightingIsNoParallaxHoweverManyFollowAtRest) {
+  std::vector<Pose> poses{at(0, 0, 0)};
+  for (int k = 0; k < 12; ++k) poses.push_back(at(0.005, 0, 0));  // so far a rest is not told from a motion
+  SlidingWindow window = windowAt(poses);
+  for (FrameId k = 0; k < poses.size(); ++k) seePoint(window, 1, k, {0.5, 0.2, 30}, {k == 0 ? 1.0 : 0, 0});
+  EXPECT_FALSE(triangulatePoint(window, kLandmarks, 1, window.points[1]));
+  EXPECT_FALSE(window.points[1].triangulated);
 }
 
 TEST(PointTriangulation, HandlesAFlight) {

@@ -93,7 +93,7 @@ struct CalibrationParams {
 /// When a track becomes part of the problem, and when it is thrown out.
 struct LandmarkParams {
   int point_min_observations = 3;         ///< window frames
-  double point_max_relative_sigma = 0.3;  ///< of the inverse depth when a track enters the problem
+  double point_max_relative_sigma = 0.5;  ///< of the inverse depth when a track enters the problem
   double point_max_error_px = 3.0;        ///< mean reprojection error above which a track is an outlier
   double max_depth_m = 200;
   double min_depth_m = 0.1;

@@ -94,6 +94,7 @@ struct WindowUpdate {
   // figures of this step
   int points_used = 0, lines_tracked = 0, lines_placed = 0, lines_used = 0, lines_degenerate = 0, iterations = 0;
   int lines_through_epipole = 0, lines_direction_unknown = 0, lines_distance_unknown = 0, lines_constrained = 0;
+  double points_distance_m = 0;  ///< median distance of the points used from the newest pose; 0: none is used
   bool keyframe = false, at_rest = false;
   bool blind = false;  ///< the images show too little: the pose is the IMU's alone
 
