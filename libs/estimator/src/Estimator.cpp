@@ -241,7 +241,7 @@ void Estimator::Impl::initialise(WindowUpdate& update) {
     if (tryStart(buffer).empty()) update.reason.clear();
   }
   if (!update.reason.empty()) {
-    if (full) tries_.failed(update.reason);
+    full ? tries_.failed(update.reason) : tries_.failedWith(window_.frames.size(), update.reason);
     return;
   }
   window_ = std::move(buffer);

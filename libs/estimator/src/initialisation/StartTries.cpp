@@ -12,6 +12,7 @@ namespace {
 constexpr int kBetweenTries = 4, kAfterWrongStart = 5;  // window frames
 constexpr int kInVain = 4;                              // tries: two seconds
 constexpr double kApart = 0.1;                          // of the wait for the scale
+constexpr double kMoreFrames = 0.1;                     // than the buffer had in the last try
 
 }  // namespace
 
@@ -28,6 +29,11 @@ void StartTries::failed(const std::string& reason) {
   in_vain_ = for_scale_ ? 0 : in_vain_ + 1;
   if (!for_scale_) waited_for_scale_ = 0;
   frames_to_wait_ = std::max(kBetweenTries, static_cast<int>(kApart * waited_for_scale_));
+}
+
+void StartTries::failedWith(std::size_t frames, const std::string& reason) {
+  reason_ = reason;
+  frames_to_wait_ = std::max(0, static_cast<int>(kMoreFrames * static_cast<double>(frames)) - 1);
 }
 
 bool StartTries::mayBeShorter() const { return in_vain_ >= kInVain; }

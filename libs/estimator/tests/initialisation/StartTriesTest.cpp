@@ -1,12 +1,17 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "initialisation/StartTries.h"
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
+
+#include <vector>
 
 #include "lintel/estimator/WindowUpdate.h"
 
 namespace lintel {
 namespace {
+
+using ::testing::ElementsAre;
 
 /// Tries in so many frames when each fails.
 int triesIn(int frames, const std::string& reason, StartTries& tries) {
@@ -21,10 +26,21 @@ int triesIn(int frames, const std::string& reason, StartTries& tries) {
 
 TEST(StartTries, EveryFifthFrameWithAFullBuffer) {
   StartTries tries;
-  EXPECT_TRUE(tries.due());
-  EXPECT_TRUE(tries.due()) << "each frame while the buffer grows";
   EXPECT_EQ(triesIn(6000, "waiting for parallax", tries), 1200);
   EXPECT_FALSE(tries.forScale());
+}
+
+TEST(StartTries, WhileTheBufferGrowsItIsLongerByATenthEachTime) {
+  StartTries tries;
+  std::vector<std::size_t> tried;
+  for (std::size_t frames = 5; frames <= 44; ++frames) {
+    if (!tries.due()) continue;
+    tried.push_back(frames);
+    tries.failedWith(frames, kScaleUnknown);
+  }
+  EXPECT_THAT(tried, ElementsAre(5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15, 16, 17, 18, 19, 20, 22, 24, 26, 28, 30, 33, 36,
+                                 39, 42));
+  EXPECT_EQ(tries.reason(), kScaleUnknown);
 }
 
 TEST(StartTries, TheLongerTheScaleStaysUnknownTheFewer) {
