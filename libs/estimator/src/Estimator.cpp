@@ -241,7 +241,10 @@ void Estimator::Impl::initialise(WindowUpdate& update) {
     if (tryStart(buffer).empty()) update.reason.clear();
   }
   if (!update.reason.empty()) {
-    full ? tries_.failed(update.reason) : tries_.failedWith(window_.frames.size(), update.reason);
+    if (full)
+      tries_.failed(update.reason);
+    else
+      tries_.failedWith(window_.frames.size(), update.reason);
     return;
   }
   window_ = std::move(buffer);

@@ -24,6 +24,8 @@ TEST(LandmarkCounts, PointsAreAsFarFromTheNewestPoseAsTheMedianOfThoseUsed) {
   countLandmarks(window, kParams.degeneracy, update);
   EXPECT_EQ(update.points_used, 3);
   EXPECT_NEAR(update.points_distance_m, 4, 1e-6);
+  countLandmarks(window, kParams.degeneracy, update);
+  EXPECT_EQ(update.points_used, 3) << "a start that is solved twice does not have twice as many";
   WindowUpdate none;
   countLandmarks(windowAt({at(0, 0, 0)}), kParams.degeneracy, none);
   EXPECT_EQ(none.points_distance_m, 0);
