@@ -215,7 +215,7 @@ struct EstimatorParams {
   double rest_images_s = 1;            ///< a body whose IMU trembles rests, too, when for so long points have moved
   double rest_images_px = 1;           ///< by less than this (median): twice what tracks drift by in changing light
   double rest_velocity_sigma = 0.01;   ///< zero-velocity observation at rest [m/s]
-  double rest_position_sigma = 0.005;  ///< by which the position may change in a rest [m]: 1 px, 2 m away
+  double rest_position_sigma = 0.02;   ///< by which the position may change in a rest [m]: 1 px, 9 m away
   FactorParams factors;
   CalibrationParams calibration;
   LandmarkParams landmarks;
