@@ -244,7 +244,7 @@ void Estimator::Impl::initialise(WindowUpdate& update) {
     if (full)
       tries_.failed(update.reason);
     else
-      tries_.failedWith(window_.frames.size(), update.reason);
+      tries_.failedWhileGrowing(window_.frames.size(), update.reason);
     return;
   }
   window_ = std::move(buffer);

@@ -31,7 +31,7 @@ void StartTries::failed(const std::string& reason) {
   frames_to_wait_ = std::max(kBetweenTries, static_cast<int>(kApart * waited_for_scale_));
 }
 
-void StartTries::failedWith(std::size_t frames, const std::string& reason) {
+void StartTries::failedWhileGrowing(std::size_t frames, const std::string& reason) {
   reason_ = reason;
   frames_to_wait_ = std::max(0, static_cast<int>(kMoreFrames * static_cast<double>(frames)) - 1);
 }

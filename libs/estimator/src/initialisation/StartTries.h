@@ -15,7 +15,7 @@ class StartTries {
   bool due();
 
   /// A try with so many frames, fewer than the buffer may have, was given up.
-  void failedWith(std::size_t frames, const std::string& reason);
+  void failedWhileGrowing(std::size_t frames, const std::string& reason);
 
   /// A try with a full buffer was given up, for what initialise() (Initializer.h) says.
   void failed(const std::string& reason);

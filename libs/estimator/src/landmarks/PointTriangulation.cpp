@@ -11,17 +11,11 @@ namespace lintel {
 
 namespace {
 
-/// A sighting relative to the host: g = ray + lambda * baseline in the target camera (PointFactor); `aside`: two
-/// directions across the host's ray, in the target camera.
+/// A sighting relative to the host, the first one: g = ray + lambda * baseline in the target camera (PointFactor);
+/// `aside`: two directions across the host's ray, in the target camera.
 struct View {
   Eigen::Vector3d ray, baseline, seen;
   Eigen::Matrix<double, 3, 2> aside;
-};
-
-/// All sightings but the host's, which is the first.
-struct Views {
-  View host;
-  std::vector<View> others;
 };
 
 /// Two directions in which rays of their kind change: on the sphere, or on the plane z = 1.
@@ -30,27 +24,27 @@ Eigen::Matrix<double, 3, 2> asideOf(const Camera& camera, const Eigen::Vector3d&
   return Eigen::Matrix<double, 3, 2>::Identity();
 }
 
-Views viewsOf(const CameraPoses& poses, const PointTrack& track) {
+/// All sightings; the host's has no baseline.
+std::vector<View> viewsOf(const CameraPoses& poses, const PointTrack& track) {
   const CorrectionBlock& correction = poses.window().correction;
-  Views views;
-  views.others.reserve(track.sightings.size());
   const PointSighting& host = track.sightings.front();
   const Pose& T_w_ci = poses.T_w_c(host.frame);
   const Eigen::Vector3d ray = host.observation.corrected(correction.data());
   const Eigen::Matrix<double, 3, 2> aside = asideOf(poses.camera(), ray);
-  views.host = {ray, Eigen::Vector3d::Zero(), ray, aside};
+  std::vector<View> views{{ray, Eigen::Vector3d::Zero(), ray, aside}};
+  views.reserve(track.sightings.size());
   for (std::size_t i = 1; i < track.sightings.size(); ++i) {
     const PointSighting& s = track.sightings[i];
     const Pose T_cj_ci = poses.T_c_w(s.frame) * T_w_ci;
-    views.others.push_back(
+    views.push_back(
         {T_cj_ci.q * ray, T_cj_ci.p, s.observation.corrected(correction.data()), T_cj_ci.q.toRotationMatrix() * aside});
   }
   return views;
 }
 
-double linearInverseDepth(const Views& views) {
+double linearInverseDepth(const std::vector<View>& views) {
   double ab = 0, bb = 0;  // x_j x (ray + lambda baseline) = 0
-  for (const View& v : views.others) {
+  for (const View& v : views) {
     const Eigen::Vector3d seen = v.seen.normalized();
     const Eigen::Vector3d a = seen.cross(v.ray), b = seen.cross(v.baseline);
     ab += a.dot(b);
@@ -70,9 +64,9 @@ struct Step {
   bool in_front = true;
 };
 
-Step evaluate(const Camera& camera, const Views& views, double lambda) {
+Step evaluate(const Camera& camera, const std::vector<View>& views, double lambda) {
   Step step;
-  for (const View& v : views.others) {
+  for (const View& v : views) {
     const Eigen::Vector3d g = v.ray + lambda * v.baseline;
     if (camera.depth(g, v.seen) < 1e-3) {
       step.in_front = false;
@@ -83,23 +77,21 @@ Step evaluate(const Camera& camera, const Views& views, double lambda) {
     step.information += J.squaredNorm();
     step.error += r.norm();
   }
-  step.error /= static_cast<double>(views.others.size());
+  step.error /= static_cast<double>(views.size() - 1);  // the host has none
   return step;
 }
 
 /// The information of all sightings on the inverse depth, in units of that of a ray. The host's ray has the noise of
-/// one sighting as well: it is eliminated, or many views from near places would seem to show a parallax that is the
-/// host's noise.
-double inverseDepthInformation(const Camera& camera, const Views& views, double lambda) {
+/// one sighting as well, and its direction is eliminated: many views from near places would else seem to show a
+/// parallax that is the host's noise.
+double inverseDepthInformation(const Camera& camera, const std::vector<View>& views, double lambda) {
   Eigen::Matrix3d H = Eigen::Matrix3d::Zero();  // the ray's direction, inverse depth
-  const auto add = [&](const View& v) {
+  for (const View& v : views) {
     const Eigen::Vector3d g = v.ray + lambda * v.baseline;
     Eigen::Matrix3d J;
     J << rayChange(camera, g, v.aside.col(0)), rayChange(camera, g, v.aside.col(1)), rayChange(camera, g, v.baseline);
     H.noalias() += J.transpose() * J;
-  };
-  add(views.host);
-  for (const View& v : views.others) add(v);
+  }
   const Eigen::Vector2d across = H.topRightCorner<2, 1>();
   return H(2, 2) - across.dot(H.topLeftCorner<2, 2>().ldlt().solve(across));
 }
@@ -110,7 +102,7 @@ bool triangulatePoint(const CameraPoses& poses, const LandmarkParams& params, do
   const SlidingWindow& window = poses.window();
   track.triangulated = false;
   if (track.sightings.size() < 2) return false;
-  const Views views = viewsOf(poses, track);
+  const std::vector<View> views = viewsOf(poses, track);
   const double least = 1.0 / params.max_depth_m, most = 1.0 / params.min_depth_m;
   double lambda = std::clamp(linearInverseDepth(views), least, most);
   Step step = evaluate(window.camera(), views, lambda);
@@ -161,7 +153,7 @@ void updatePointUncertainty(const CameraPoses& poses, double sigma_px, PointTrac
   const double depth =
       window.camera().depth(poses.T_c_w(first.frame) * window.positionOf(track), first.observation.ray);
   if (depth <= 0) return;
-  const Views views = viewsOf(poses, track);
+  const std::vector<View> views = viewsOf(poses, track);
   if (!evaluate(window.camera(), views, 1 / depth).in_front) return;
   const double information = inverseDepthInformation(window.camera(), views, 1 / depth);
   if (information <= 0) return;

@@ -36,7 +36,7 @@ TEST(StartTries, WhileTheBufferGrowsItIsLongerByATenthEachTime) {
   for (std::size_t frames = 5; frames <= 44; ++frames) {
     if (!tries.due()) continue;
     tried.push_back(frames);
-    tries.failedWith(frames, kScaleUnknown);
+    tries.failedWhileGrowing(frames, kScaleUnknown);
   }
   EXPECT_THAT(tried, ElementsAre(5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15, 16, 17, 18, 19, 20, 22, 24, 26, 28, 30, 33, 36,
                                  39, 42));
