@@ -209,13 +209,13 @@ struct EstimatorParams {
   int keyframe_min_tracked = 20;        ///< fewer points shared with the last keyframe make a new one
   double max_keyframe_interval_s = 10;  ///< a keyframe at least this often, also at rest
   int max_iterations = 8;
-  bool detect_rest = true;            ///< by points, IMU and speed; a frame at rest gets a zero-velocity observation
-  double rest_disparity_px = 0.25;    ///< median motion between window frames below which rest is assumed
-  double rest_speed = 0.05;           ///< estimated speed above which it is not [m/s]
-  double rest_images_s = 1;           ///< a body whose IMU trembles rests, too, when for so long points have moved
-  double rest_images_px = 1;          ///< by less than this (median): twice what tracks drift by in changing light
-  double rest_velocity_sigma = 0.01;  ///< zero-velocity observation at rest [m/s]
-  double rest_position_sigma = 0.02;  ///< by which the position may change in a rest [m]: 1 px, 9 m away
+  bool detect_rest = true;             ///< by points, IMU and speed; a frame at rest gets a zero-velocity observation
+  double rest_disparity_px = 0.25;     ///< median motion between window frames below which rest is assumed
+  double rest_speed = 0.05;            ///< estimated speed above which it is not [m/s]
+  double rest_images_s = 1;            ///< a body whose IMU trembles rests, too, when for so long points have moved
+  double rest_images_px = 1;           ///< by less than this (median): twice what tracks drift by in changing light
+  double rest_velocity_sigma = 0.01;   ///< zero-velocity observation at rest [m/s]
+  double rest_position_sigma = 0.005;  ///< by which the position may change in a rest [m]: 1 px, 2 m away
   FactorParams factors;
   CalibrationParams calibration;
   LandmarkParams landmarks;
