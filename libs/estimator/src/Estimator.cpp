@@ -399,7 +399,7 @@ void Estimator::Impl::dropOldest(WindowUpdate& update) {
     params.landmarks.lasting_points = 0;  // they would be linearised at a wrong scale
   marginaliseOldest(window_, params, scale_drift_.takeUnexplainedChange(scale_sigma));
   retireTracks(window_, leaving, true, update);
-  retireKeyframe(window_, window_.frames.front(), update);
+  retireKeyframe(window_, 0, update);
   window_.removeFrame(leaving, true);
 }
 

@@ -50,7 +50,7 @@ class DriftedFlight : public testing::Test {
       builder.add(update);
       if (i % 5 != 0) continue;
       last.keyframes.push_back(
-          {i, update.t_ns, update.T_w_b, frame.truth.state.v_w_b + drift, {}, imu, false, false, {}, 0});
+          {i, update.t_ns, update.T_w_b, frame.truth.state.v_w_b + drift, {}, imu, false, false, {}, {}, 0});
       imu = std::make_shared<Preintegration>(ImuBias{}, rig_.imu_noise);
       imu->append({frame.imu.back()});
       for (const PointObservation& o : frame.tracks.points) {

@@ -69,8 +69,9 @@ class RunCheck {
   TurnCheck turns_;
   SigmaCheck sigma_;
   std::optional<InertialState> keyframe_;  ///< the last one that has left the window
-  std::vector<double> imu_misfits_;        ///< squared, of nine degrees of freedom, between keyframes
-  std::vector<double> accel_misfits_;      ///< of six, without the rotation
+  std::optional<InertialState> next_;      ///< the one after it, by the same solve
+  std::vector<double> imu_misfits_;        ///< squared, of nine degrees of freedom, between keyframes as each left
+  std::vector<double> accel_misfits_;      ///< of six, without the rotation, between keyframes of one solve
   std::vector<double> biases_gyro_, biases_accel_;
   Eigen::Vector3d bias_gyro_;
   std::string divergence_;           ///< the first; empty: none

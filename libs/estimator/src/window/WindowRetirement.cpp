@@ -2,8 +2,10 @@
 #include "window/WindowRetirement.h"
 
 #include <cmath>
+#include <optional>
 
 #include "landmarks/LineTriangulation.h"
+#include "window/WindowStamps.h"
 
 namespace lintel {
 
@@ -93,15 +95,19 @@ void retireTracks(SlidingWindow& window, FrameId leaving, bool keyframe, WindowU
   }
 }
 
-void retireKeyframe(const SlidingWindow& window, const WindowFrame& frame, WindowUpdate& update) {
+void retireKeyframe(const SlidingWindow& window, std::size_t k, WindowUpdate& update) {
+  const WindowFrame& frame = window.frames[k];
+  std::optional<InertialState> next;
+  if (k + 1 < window.frames.size()) next = stateOf(window.frames[k + 1]);
   update.keyframes.push_back({frame.id, frame.t_ns, frame.T_w_b(), velocityOf(frame.motion.data()),
-                              biasOf(frame.motion.data()), frame.imu, frame.at_rest, frame.blind, window.imuAxes()});
+                              biasOf(frame.motion.data()), frame.imu, frame.at_rest, frame.blind, window.imuAxes(),
+                              next});
 }
 
 void retireAll(SlidingWindow& window, WindowUpdate& update) {
   for (const auto& [id, track] : window.points) retirePoint(window, track, update);
   for (const auto& [id, track] : window.lines) retireLine(track, update);
-  for (const WindowFrame& frame : window.frames) retireKeyframe(window, frame, update);
+  for (std::size_t k = 0; k < window.frames.size(); ++k) retireKeyframe(window, k, update);
   window.points.clear();
   window.lines.clear();
   window.frames.clear();

@@ -95,7 +95,8 @@ TEST_F(WindowRetirementTest, KeyframesCarryTheirState) {
   window_.frames[1].at_rest = true;
   window_.axes[3] = 0.02;  // (1, 0), row by row
   window_.mean_f = {0, 0, 9};
-  retireKeyframe(window_, window_.frames[1], update_);
+  window_.frames[2].motion[0] = 5;
+  retireKeyframe(window_, 1, update_);
   ASSERT_EQ(update_.keyframes.size(), 1u);
   const RetiredKeyframe& keyframe = update_.keyframes[0];
   EXPECT_EQ(keyframe.id, 1u);
@@ -107,6 +108,9 @@ TEST_F(WindowRetirementTest, KeyframesCarryTheirState) {
   EXPECT_TRUE(keyframe.at_rest);
   EXPECT_EQ(keyframe.axes.A(1, 0), 0.02);
   EXPECT_EQ(keyframe.axes.mean_f, Eigen::Vector3d(0, 0, 9));
+  ASSERT_TRUE(keyframe.next) << "for what the IMU says between both, by one solve";
+  EXPECT_EQ(keyframe.next->T_w_b.p, window_.frames[2].T_w_b().p);
+  EXPECT_EQ(keyframe.next->v_w_b.x(), 5);
 }
 
 TEST_F(WindowRetirementTest, RetireAllHandsOverEverythingOnceAndEmpties) {
@@ -114,6 +118,8 @@ TEST_F(WindowRetirementTest, RetireAllHandsOverEverythingOnceAndEmpties) {
   EXPECT_THAT(ids(update_.points), ElementsAre(1, 2, 3));
   EXPECT_THAT(ids(update_.lines), ElementsAre(1, 2, 3));
   EXPECT_THAT(ids(update_.keyframes), ElementsAre(0, 1, 2, 3));
+  EXPECT_TRUE(update_.keyframes[2].next);
+  EXPECT_FALSE(update_.keyframes[3].next);
   EXPECT_TRUE(window_.frames.empty() && window_.points.empty() && window_.lines.empty() && window_.priors.empty());
 }
 

@@ -22,8 +22,9 @@ struct RetiredKeyframe {
   ImuBias bias;
   std::shared_ptr<const Preintegration> imu;  ///< from the keyframe before; null for the first of a run
   bool at_rest = false, blind = false;
-  ImuAxes axes;                ///< of its samples, as the window knew them when the keyframe left it
-  double offset_change_s = 0;  ///< what the offset between the clocks has beside that of all keyframes
+  ImuAxes axes;                       ///< of its samples, as the window knew them when the keyframe left it
+  std::optional<InertialState> next;  ///< the frame after it, by the same solve; none for the newest
+  double offset_change_s = 0;         ///< what the offset between the clocks has beside that of all keyframes
 };
 
 /// A point that is not tracked any more.
