@@ -43,6 +43,7 @@ struct LandmarkBlock {
   };
 
   double* block = nullptr;
+  const Eigen::Vector3d* origin_w = nullptr;
   const ceres::LossFunction* loss = nullptr;  ///< of a sighting
   const TrackNoise* noise = &kWhiteNoise;
   std::vector<Sighting> sightings;  ///< the earliest first

@@ -2,7 +2,9 @@
 #include "solver/LandmarkSystem.h"
 
 #include <algorithm>
+#include <limits>
 
+#include "lintel/core/Quantiles.h"
 #include "lintel/factors/StructuralFactor.h"
 
 namespace lintel {
@@ -93,7 +95,9 @@ LandmarkBlock<Target>& LandmarkSystem::landmarkOf(SlidingWindow& window, TrackId
   auto& [blocks, places] = std::get<Landmarks<Target>>(landmarks_);
   const auto [it, is_new] = places.emplace(id, blocks.size());
   if (is_new) {
-    blocks.emplace_back().block = window.block({kKindOf<Target>, id});
+    const BlockKey key{kKindOf<Target>, id};
+    blocks.emplace_back().block = window.block(key);
+    blocks.back().origin_w = &originOf(window, key);
     blocks.back().sightings.reserve(window.frames.size());
   }
   return blocks[it->second];
@@ -159,12 +163,19 @@ double LandmarkSystem::backSubstitute(const Eigen::VectorXd& camera_step, double
   return decrease;
 }
 
-void LandmarkSystem::apply(std::vector<double>& saved) {
+double LandmarkSystem::medianDistance(const Eigen::Vector3d& from_w) const {
+  std::vector<double> distances;
+  eachLandmark(landmarks_, [&](const auto& landmark) {
+    distances.push_back(landmarkDistance(landmark.kKind, *landmark.origin_w - from_w, landmark.block));
+  });
+  return distances.empty() ? std::numeric_limits<double>::infinity() : upperMedian(distances);
+}
+
+void LandmarkSystem::apply(const ScaleStep& scale, std::vector<double>& saved) {
   eachLandmark(landmarks_, [&](auto& landmark) {
-    const auto& manifold = *manifoldOf(landmark.kKind);
     const auto at = saved.size();
     saved.insert(saved.end(), landmark.block, landmark.block + landmark.kSize);
-    manifold.Plus(saved.data() + at, landmark.step.data(), landmark.block);
+    scale.plus(landmark.kKind, *landmark.origin_w, saved.data() + at, landmark.step.data(), landmark.block);
   });
 }
 

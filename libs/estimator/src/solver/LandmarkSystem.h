@@ -9,6 +9,7 @@
 
 #include "lintel/estimator/SlidingWindow.h"
 #include "solver/LandmarkBlock.h"
+#include "solver/ScaleStep.h"
 
 namespace lintel {
 
@@ -57,7 +58,10 @@ class LandmarkSystem {
   /// The landmarks' reaction to a step of the cameras; their part of the model's decrease.
   double backSubstitute(const Eigen::VectorXd& camera_step, double damping);
 
-  void apply(std::vector<double>& saved);  ///< appends the former values
+  /// How far away landmarks are [m]; infinite where there is none.
+  double medianDistance(const Eigen::Vector3d& from_w) const;
+
+  void apply(const ScaleStep& scale, std::vector<double>& saved);  ///< appends the former values
   std::size_t revert(const std::vector<double>& saved, std::size_t at);
 
  private:

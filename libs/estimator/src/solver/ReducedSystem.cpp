@@ -2,6 +2,7 @@
 #include "solver/ReducedSystem.h"
 
 #include <algorithm>
+#include <cmath>
 #include <tuple>
 
 #include "solver/SparseCholesky.h"
@@ -133,16 +134,44 @@ bool ReducedSystem::solve(double damping) {
   return true;
 }
 
+/// About the oldest frame's position: the change of scale that explains most of the positions' steps. A turn of them
+/// all has no part in it.
+ScaleStep ReducedSystem::scaleStep() const {
+  const auto stepOf = [&](const WindowFrame& frame) -> Eigen::Vector3d {
+    const Eigen::Index at = offsetOf({BlockKey::kPose, frame.id});
+    return at < 0 ? Eigen::Vector3d::Zero() : Eigen::Vector3d(step_.segment<3>(at));
+  };
+  const WindowFrame& oldest = window_.frames.front();
+  const Eigen::Vector3d centre_w = oldest.T_w_b().p;
+  double along = 0, square = 0;
+  for (const WindowFrame& frame : window_.frames) {
+    const Eigen::Vector3d p = frame.T_w_b().p - centre_w;
+    along += p.dot(stepOf(frame) - stepOf(oldest));
+    square += p.squaredNorm();
+  }
+  // At rest, positions are noise, and so would be the change; without parallax, images do not see it either.
+  constexpr double kLeastParallax_rad = 0.01;
+  const double mean_square = square / static_cast<double>(window_.frames.size());
+  const bool moves = std::sqrt(mean_square) > kLeastParallax_rad * landmarks_.medianDistance(centre_w);
+  return {centre_w, moves ? along / square : 0};
+}
+
 void ReducedSystem::apply() {
+  const ScaleStep scale = scaleStep();
   saved_.clear();
   for (std::size_t i = 0; i < states_.blocks.size(); ++i) {
-    const auto manifold = manifoldOf(states_.blocks[i].kind);
-    double* block = window_.block(states_.blocks[i]);
+    const BlockKey& key = states_.blocks[i];
+    const auto manifold = manifoldOf(key.kind);
+    double* block = window_.block(key);
     const auto at = static_cast<std::ptrdiff_t>(saved_.size());
     saved_.insert(saved_.end(), block, block + manifold->AmbientSize());
-    manifold->Plus(saved_.data() + at, step_.data() + states_.offsets[i], block);
+    const double* step = step_.data() + states_.offsets[i];
+    if (isLandmark(key))
+      scale.plus(key.kind, originOf(window_, key), saved_.data() + at, step, block);
+    else
+      manifold->Plus(saved_.data() + at, step, block);
   }
-  landmarks_.apply(saved_);
+  landmarks_.apply(scale, saved_);
 }
 
 void ReducedSystem::revert() {

@@ -76,6 +76,7 @@ class ReducedSystem {
   double addPrior(const Factor& factor, const PriorFactor& prior);
 
   CameraChain chain() const;
+  ScaleStep scaleStep() const;  ///< of the last solution
   void leaveOutHeld(Eigen::MatrixXd& H, Eigen::VectorXd& b) const;
 
   /// Where the columns of a factor's blocks lie, among their own and among the states' (negative: a constant).

@@ -33,18 +33,22 @@ SlidingWindow disturbedWindow() {
   return window;
 }
 
-WindowFactors everything(const SlidingWindow& window, const FactorParams& params = kParams.factors) {
+WindowFactors everything(const SlidingWindow& window, const FactorParams& params, const MotionBlock& first_motion) {
   WindowFactors factors(window, params);
   factors.addGauge();
   factors.addCalibrationPriors(kParams.calibration, window.T_b_c());
   factors.addAxesPrior(kParams.calibration);
   factors.addImu();
-  factors.add(makeBlockPrior(manifoldOf(BlockKey::kMotion), window.frames.front().motion,
+  factors.add(makeBlockPrior(manifoldOf(BlockKey::kMotion), first_motion,
                              Eigen::VectorXd::Constant(kMotionSize, 0.02)),  // half a second does not show the scale
               {{BlockKey::kMotion, window.frames.front().id}});
   factors.addPoints();
   factors.addLines(kParams.degeneracy);
   return factors;
+}
+
+WindowFactors everything(const SlidingWindow& window, const FactorParams& params = kParams.factors) {
+  return everything(window, params, window.frames.front().motion);
 }
 
 TEST(WindowSolver, FindsTheMinimumThatCeresFinds) {
@@ -132,6 +136,67 @@ TEST(WindowSolver, AxesAreHeldWhereTheyAreNotRefined) {
     solveWindow(window, factors.factors(), params.calibration, {50});
     EXPECT_EQ(window.axes.norm() > 0, refined);
   }
+}
+
+CalibrationParams exactCalibration() {
+  CalibrationParams calibration;
+  calibration.refine_extrinsics = calibration.refine_camera = calibration.refine_readout = false;
+  calibration.refine_time_offset = calibration.refine_axes = false;
+  return calibration;
+}
+
+/// A camera that moves by 18 m past things 50 to 110 m away, all of it smaller by a third about the first frame. What
+/// speaks against it is a prior on the last frame's position, 0.5 m strong.
+struct WronglyScaledWindow {
+  static constexpr double kScale = 2.0 / 3, kLength_m = 18;
+  const FactorParams params = withoutTrackLoss();
+  SlidingWindow window;
+  WindowFactors factors;
+
+  WronglyScaledWindow() : window(made()), factors(window, params) {
+    const auto pose = manifoldOf(BlockKey::kPose);
+    const PoseBlock first = window.frames.front().pose;
+    PoseBlock last = window.frames.back().pose;
+    last[0] = kLength_m;
+    const auto sigmas = [](double position_m, double rotation_rad) {
+      Eigen::VectorXd sigma(kPoseTangent);
+      sigma << Eigen::Vector3d::Constant(position_m), Eigen::Vector3d::Constant(rotation_rad);
+      return sigma;
+    };
+    factors.add(makeBlockPrior(pose, first, sigmas(1e-4, 1e-4)), {{BlockKey::kPose, window.frames.front().id}});
+    factors.add(makeBlockPrior(pose, last, sigmas(0.5, 1)), {{BlockKey::kPose, window.frames.back().id}});
+    factors.addPoints();
+    factors.addLines(kParams.degeneracy);
+  }
+
+  static SlidingWindow made() {
+    constexpr int kFrames = 10;
+    std::vector<Pose> poses;
+    for (int k = 0; k < kFrames; ++k)
+      poses.push_back(at(kLength_m * k / (kFrames - 1), k % 2 == 0 ? 0 : 0.8, 0.3 * (k % 3)));
+    SlidingWindow window = windowAt(poses);
+    for (int k = 0; k < kFrames; ++k) {
+      for (int i = 0; i < 30; ++i)
+        seePoint(window, static_cast<TrackId>(i), k, {7.0 * (i % 6) - 10, 9.0 * (i % 5) - 18, 50 + 2.0 * i});
+      for (int i = 0; i < 6; ++i)
+        seeLine(window, static_cast<TrackId>(i), k,
+                {{6.0 * i - 12, -15, 60 + 8.0 * i}, {6.0 * i - 9, 15, 64 + 5.0 * i}});
+    }
+    for (WindowFrame& frame : window.frames) frame.pose.head<3>() *= kScale;
+    triangulatePoints(window, kParams.landmarks, 1);
+    triangulateLines(window, kParams);
+    return window;
+  }
+
+  double length_m() const { return (window.frames.back().T_w_b().p - window.frames.front().T_w_b().p).norm(); }
+};
+
+TEST(WindowSolver, FindsAScaleThatImagesDoNotShowInFewSteps) {
+  WronglyScaledWindow far;
+  const double wanted_m = far.made().frames.back().T_w_b().p.norm() / far.kScale;
+  EXPECT_LT(far.length_m(), 0.7 * wanted_m);
+  solveWindow(far.window, far.factors.factors(), exactCalibration(), {8, 0, false, 1e-9, 1e-8});
+  EXPECT_NEAR(far.length_m() / wanted_m, 1, 0.01);
 }
 
 TEST(WindowSolver, StopsAtTheLimitOfIterations) {
