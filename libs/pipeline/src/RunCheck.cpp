@@ -15,7 +15,7 @@ namespace {
 // against the estimate's, or an accelerometer that is not what it is taken for, makes it seem so.
 constexpr std::int64_t kSpan_ns = 5'000'000'000;
 constexpr double kLargestAcceleration = 3;  // [m/s^2]
-// Cars and racing drones gain more: they are believed where all keyframes' images and the IMU agree with it.
+// Cars and racing drones gain more: they are believed where images and the IMU agree with it at all keyframes.
 constexpr double kLargestConfirmed = 20;
 constexpr double kLongLever_m = 2;  // longer than what holds a camera and its IMU
 constexpr double kFewPoses = 0.25;  // of all frames
@@ -135,13 +135,19 @@ std::map<std::string, double> RunCheck::evidence() const {
   return values;
 }
 
+bool RunCheck::agree(const RefinementReport& refinement) const {
+  if (refinement.rounds > 0) return refinement.accepted && refinement.imu_after < kLargestImuError;
+  // As each left the window, keyframes of an estimate that diverges are off by ten times the IMU's noise and more.
+  std::vector<double> misfits = imu_misfits_;
+  return misfits.size() >= kLeastMisfits && upperQuantile(misfits, 0.5) < kExpectedMisfit;
+}
+
 std::string RunCheck::symptom(const OdometryStatistics& s, const Rig& estimated,
                               const RefinementReport& refinement) const {
   const double after_first = static_cast<double>(s.last_frame_ns - s.first_frame_ns) * 1e-9 - s.first_start_s;
   const double all = static_cast<double>(s.last_frame_ns - s.first_frame_ns) * 1e-9;
   const double expected = s.first_start_s < 0 || all <= 0 ? 0 : static_cast<double>(s.frames) * after_first / all;
-  const bool confirmed = refinement.accepted && refinement.imu_after < kLargestImuError;
-  if (!(largest_acceleration_ < (confirmed ? kLargestConfirmed : kLargestAcceleration))) {
+  if (!(largest_acceleration_ < (agree(refinement) ? kLargestConfirmed : kLargestAcceleration))) {
     return formatted("the estimate diverged: it gained %.0f m/s within 5 s", 5 * largest_acceleration_);
   }
   if (!divergence_.empty()) return divergence_;

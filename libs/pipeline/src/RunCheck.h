@@ -54,6 +54,8 @@ class RunCheck {
   void watchSpeed(const WindowUpdate& update);
   void watchImu(const WindowUpdate& update);
   void watchFailures(const WindowUpdate& update);
+  /// Whether all keyframes' images and the IMU agree.
+  bool agree(const RefinementReport& refinement) const;
   /// Of an estimate that is wrong; empty: none.
   std::string symptom(const OdometryStatistics& statistics, const Rig& estimated,
                       const RefinementReport& refinement) const;
