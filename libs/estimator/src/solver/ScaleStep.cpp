@@ -23,7 +23,7 @@ PointBlock scaledPoint(const double* block, const Eigen::Vector3d& origin, doubl
 
 /// How a point's tangent moves with the scale.
 Eigen::Vector3d pointRate(const double* block, const Eigen::Vector3d& origin) {
-  RowMajorMatrix J(kPointTangent, kPointSize);
+  Eigen::Matrix<double, kPointTangent, kPointSize, Eigen::RowMajor> J;
   manifoldOf(BlockKey::kPoint)->MinusJacobian(block, J.data());
   return J.leftCols<3>() * (Eigen::Vector3d::Map(block) + block[3] * origin);
 }
