@@ -149,6 +149,8 @@ ScaleStep ReducedSystem::scaleStep() const {
     along += p.dot(stepOf(frame) - stepOf(oldest));
     square += p.squaredNorm();
   }
+  constexpr double kLeastChange = 1e-3;  // a linear step leaves a smaller one by a millionth
+  if (!(std::abs(along) > kLeastChange * square)) return {centre_w, 0};
   // At rest, positions are noise, and so would be the change; without parallax, images do not see it either.
   constexpr double kLeastParallax_rad = 0.01;
   const double mean_square = square / static_cast<double>(window_.frames.size());
