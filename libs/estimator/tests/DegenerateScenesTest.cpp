@@ -160,7 +160,8 @@ TEST(DegenerateScenes, PolesAndStrutsAmongRailsAreNotBent) {
           << "track " << id << " is tied to what it is not parallel to";
       continue;
     }
-    EXPECT_LT(angle_deg(line, mixed), 1.1 * angle_deg(dropped->second, mixed) + 1) << "track " << id;
+    if (angle_deg(dropped->second, mixed) > 10) continue;  // it has no direction that could be bent
+    EXPECT_LT(angle_deg(line, mixed), angle_deg(dropped->second, mixed) + 1) << "track " << id;
     ++compared;
   }
   EXPECT_GE(compared, 10);

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <vector>
@@ -79,30 +80,29 @@ TEST(RunCheck, AWrongGravityIsNamedFirst) {
   EXPECT_NE(verdictOf(0.01, 40).find("gravity has been taken out"), std::string::npos) << verdictOf(0.01, 40);
 }
 
-/// A run without refinement, in which the estimate gains 5 m/s a second; `shown`: the accelerometer does, too.
-std::string verdictOfFastRun(bool shown, double acceleration = 5) {
+/// A run of 100 keyframes at 10 Hz, without refinement: sample `i` of the 21 before a keyframe, and its state.
+std::string verdictOfKeyframes(const std::function<ImuSample(int i)>& sample,
+                               const std::function<void(double t_s, RetiredKeyframe&)>& place) {
   RunCheck check{givenRig()};
   OdometryStatistics statistics;
   const auto image =
       std::make_shared<GrayImage>(GrayImage{64, 64, std::vector<std::uint8_t>(std::size_t{64} * 64, 100)});
   for (int frame = 1; frame <= 100; ++frame) {
-    const double t_s = 0.1 * frame;
     TrackedFrame tracked;
     tracked.step.frame.image = image;
     WindowUpdate update;
     update.t_ns = std::int64_t{100'000'000} * frame;
     update.status = EstimatorStatus::kTracking;
-    update.v_w_b.x() = acceleration * t_s;
-    for (int i = 0; i <= 20; ++i)
-      tracked.step.imu.push_back({update.t_ns - std::int64_t{5'000'000} * (20 - i),
-                                  Eigen::Vector3d(0.001 * std::sin(97.0 * i), 0, 0),
-                                  Eigen::Vector3d(shown ? acceleration : 0, 0, 9.81 + 0.02 * std::sin(97.0 * i))});
-    RetiredKeyframe keyframe;
-    keyframe.T_w_b.p.x() = 0.5 * acceleration * t_s * t_s;
-    keyframe.v_w_b = update.v_w_b;
+    for (int i = 0; i <= 20; ++i) {
+      tracked.step.imu.push_back(sample(i));
+      tracked.step.imu.back().t_ns = update.t_ns - std::int64_t{5'000'000} * (20 - i);
+    }
     auto imu = std::make_shared<Preintegration>(ImuBias{}, ImuNoise{});
     imu->append(tracked.step.imu);
+    RetiredKeyframe keyframe;
     keyframe.imu = imu;
+    place(0.1 * frame, keyframe);
+    update.v_w_b = keyframe.v_w_b;
     update.keyframes.push_back(keyframe);
     check.add(tracked, update);
     ++statistics.frames;
@@ -111,6 +111,18 @@ std::string verdictOfFastRun(bool shown, double acceleration = 5) {
   statistics.last_frame_ns = 10'000'000'000;
   statistics.frames_with_pose = statistics.frames;
   return check.verdict(statistics, givenRig());
+}
+
+/// The estimate gains 5 m/s a second; `shown`: the accelerometer says so, too.
+std::string verdictOfFastRun(bool shown, double acceleration = 5) {
+  const auto sample = [&](int i) {
+    const double shake = std::sin(97.0 * i);
+    return ImuSample{0, {0.001 * shake, 0, 0}, {shown ? acceleration : 0, 0, 9.81 + 0.02 * shake}};
+  };
+  return verdictOfKeyframes(sample, [&](double t_s, RetiredKeyframe& keyframe) {
+    keyframe.T_w_b.p.x() = 0.5 * acceleration * t_s * t_s;
+    keyframe.v_w_b.x() = acceleration * t_s;
+  });
 }
 
 TEST(RunCheck, ADivergedRunIsNoGoodOne) {
@@ -160,32 +172,11 @@ TEST(RunCheck, AFailureWithoutDataIsNoDivergence) {
 
 /// A body at rest whose accelerometer shows along y some of what is along z; `known`: the estimate takes it out.
 std::string verdictWithWrongAxes(bool known) {
-  RunCheck check{givenRig()};
-  OdometryStatistics statistics;
-  for (int frame = 0; frame < 100; ++frame) {
-    TrackedFrame tracked;
-    tracked.step.frame.image =
-        std::make_shared<GrayImage>(GrayImage{64, 64, std::vector<std::uint8_t>(std::size_t{64} * 64, 100)});
-    WindowUpdate update;
-    update.t_ns = std::int64_t{100'000'000} * (frame + 1);
-    update.status = EstimatorStatus::kTracking;
-    for (int i = 0; i <= 20; ++i)
-      tracked.step.imu.push_back({update.t_ns - std::int64_t{5'000'000} * (20 - i), {0, 0, 0}, {0, 0.4, 9.8}});
-    RetiredKeyframe keyframe;
-    auto imu = std::make_shared<Preintegration>(ImuBias{}, ImuNoise{});
-    imu->append(tracked.step.imu);
-    keyframe.imu = imu;
+  const auto sample = [](int) { return ImuSample{0, {0, 0, 0}, {0, 0.4, 9.8}}; };
+  return verdictOfKeyframes(sample, [&](double, RetiredKeyframe& keyframe) {
     if (known) keyframe.axes.A(1, 2) = -0.4 / 9.8;
     keyframe.T_w_b.p.x() = 0.001;
-    keyframe.v_w_b.setZero();
-    update.keyframes.push_back(keyframe);
-    check.add(tracked, update);
-    ++statistics.frames;
-  }
-  statistics.first_start_s = 0;
-  statistics.last_frame_ns = 10'000'000'000;
-  statistics.frames_with_pose = statistics.frames;
-  return check.verdict(statistics, givenRig());
+  });
 }
 
 TEST(RunCheck, AxesThatTheEstimateKnowsAreNoContradiction) {
