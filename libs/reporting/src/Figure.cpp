@@ -143,7 +143,7 @@ std::string scriptOf(const Figure& figure) {
 }
 
 ChildResult runGnuplot(const std::string& script) {
-  return runChild({{"gnuplot", "-d", "-"}, script, "", {"LC_ALL=C.UTF-8"}});
+  return runChild({{"gnuplot", "-d", "/dev/stdin"}, script, "", {"LC_ALL=C.UTF-8"}});
 }
 
 std::vector<std::string> picturesIn(const std::string& output) {

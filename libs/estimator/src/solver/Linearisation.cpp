@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // How the factors come into ReducedSystem's normal equations: the larger half of its class to compile.
 #include <cmath>
+#include <cstdint>
+#include <numeric>
 
 #include "solver/ReducedSystem.h"
 
@@ -29,29 +31,32 @@ double ReducedSystem::linearise() {
 double ReducedSystem::addOther(const Factor& factor) {
   // NOLINTNEXTLINE(clang-analyzer-core.CallAndMessage): a factor has a cost
   const int rows = factor.cost->num_residuals();
-  std::vector<const double*> blocks;
-  std::vector<RowMajorMatrix> ambient;
-  std::vector<double*> pointers;
-  const Placement to = placementOf(factor);
+  const std::vector<std::int32_t>& sizes = factor.cost->parameter_block_sizes();
+  auto& [blocks, ambient, numbers, r, J, H] = other_;
+  numbers.resize(static_cast<std::size_t>(rows * std::accumulate(sizes.begin(), sizes.end(), 0)));
+  blocks.clear();
+  ambient.clear();
+  double* next = numbers.data();
   for (std::size_t i = 0; i < factor.blocks.size(); ++i) {
     blocks.push_back(window_.block(factor.blocks[i]));
-    ambient.emplace_back(rows, factor.cost->parameter_block_sizes()[i]);
+    ambient.push_back(next);
+    next += rows * sizes[i];
   }
-  pointers.reserve(ambient.size());
-  for (RowMajorMatrix& m : ambient) pointers.push_back(m.data());
-  Eigen::VectorXd r(rows);
-  factor.cost->Evaluate(blocks.data(), r.data(), pointers.data());
-  Eigen::MatrixXd J(rows, to.size());
+  r.resize(rows);
+  factor.cost->Evaluate(blocks.data(), r.data(), ambient.data());
+  const Placement to = placementOf(factor);
+  J.resize(rows, to.size());
   for (std::size_t i = 0; i < blocks.size(); ++i) {
     const StateManifold& manifold = *manifoldOf(factor.blocks[i].kind);
+    const Eigen::Map<const RowMajorMatrix> by_block(ambient[i], rows, sizes[i]);
     auto of_block = J.middleCols(to.from[i], manifold.TangentSize());
     if (isVectorSpace(manifold)) {
-      of_block = ambient[i];
+      of_block = by_block;
       continue;
     }
     RowMajorMatrix plus(manifold.AmbientSize(), manifold.TangentSize());
     manifold.PlusJacobian(blocks[i], plus.data());
-    of_block = ambient[i].lazyProduct(plus);
+    of_block = by_block.lazyProduct(plus);
   }
   double weight;
   const double cost = robustCost(factor.loss, r.squaredNorm(), weight);
@@ -59,7 +64,8 @@ double ReducedSystem::addOther(const Factor& factor) {
     J *= std::sqrt(weight);
     r *= std::sqrt(weight);
   }
-  addInformation(to, J.transpose() * J, J.transpose() * r);
+  H.noalias() = J.transpose() * J;
+  addInformation(to, H, J.transpose() * r);
   return cost;
 }
 

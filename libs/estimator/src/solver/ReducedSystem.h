@@ -87,6 +87,15 @@ class ReducedSystem {
   Placement placementOf(const Factor& factor) const;
   void addInformation(const Placement& place, const Eigen::MatrixXd& H, const Eigen::VectorXd& b);
 
+  /// Of a factor that is no image's; kept, as memory takes longer to get than most factors to evaluate.
+  struct OtherScratch {
+    std::vector<const double*> blocks;
+    std::vector<double*> ambient;  ///< Jacobians by the blocks' numbers, in `numbers`
+    std::vector<double> numbers;
+    Eigen::VectorXd r;
+    Eigen::MatrixXd J, H;
+  };
+
   SlidingWindow& window_;
   LandmarkSystem landmarks_;
   NormalEquations states_;          // of the others alone, lower triangle
@@ -95,6 +104,7 @@ class ReducedSystem {
   Eigen::MatrixXd factor_;          // of the last solution
   Eigen::VectorXd step_;
   std::vector<double> saved_;
+  OtherScratch other_;
   double model_decrease_ = 0, states_move_ = 0;
 };
 
