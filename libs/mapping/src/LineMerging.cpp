@@ -22,6 +22,7 @@ namespace {
 constexpr double kLineCell_m = 0.3;  // lines with places nearer than this are always compared
 constexpr double kApart =
     200;  // squared standard deviations between two estimates: farther apart they are not compared
+constexpr double kAgreeing = 13.3;  // the same, of four numbers: 1 % of the estimates of one line are farther apart
 
 struct LinePair {
   double score = 0;
@@ -46,12 +47,12 @@ double mahalanobis2(const LineEstimate& a, const LineEstimate& b) {
 
 class LineMerger {
  public:
-  LineMerger(const KeyframeCameras& cameras, const LineFitParams& fit, const MergeParams& params, double drift_px,
-             std::vector<LineRecord>& lines)
+  LineMerger(const KeyframeCameras& cameras, const LineFitParams& fit, const MergeParams& params,
+             const MergeAllowance& allowance, std::vector<LineRecord>& lines)
       : cameras_(cameras),
         fit_(fit),
         params_(params),
-        drift_px_(drift_px),
+        allowance_(allowance),
         lines_(lines),
         merged_(lines.size()),
         refused_(merged_),
@@ -65,11 +66,11 @@ class LineMerger {
     const std::vector<LinePair> all = candidates();
     for (const LinePair& candidate : all)
       merged += tryMerge(merged_.rootOf(candidate.a), merged_.rootOf(candidate.b), 0);
-    if (drift_px_ > 0) {
+    if (allowance_.drift_px > 0) {
       findRivals(all);
       refused_.clear();
       for (const LinePair& candidate : all)
-        merged += tryMerge(merged_.rootOf(candidate.a), merged_.rootOf(candidate.b), drift_px_);
+        merged += tryMerge(merged_.rootOf(candidate.a), merged_.rootOf(candidate.b), allowance_.drift_px);
     }
     merged_.compact(lines_);
     return merged;
@@ -188,8 +189,10 @@ class LineMerger {
   /// What can be said without fitting, of these two alone.
   bool mayBeOne(std::size_t a, std::size_t b, double drift_px, double& score) const {
     if (!near(a, b, score) || areSeenAsTwo(a, b)) return false;
-    if (drift_px == 0) return mahalanobis2(lines_[a].estimate, lines_[b].estimate) <= kApart;
-    return !shareKeyframe(lines_[a], lines_[b]) && runTheSameWay(a, b);
+    const bool same_way = runTheSameWay(a, b);
+    if (!same_way && (drift_px > 0 || !allowance_.contrast)) return false;
+    if (drift_px > 0) return !shareKeyframe(lines_[a], lines_[b]);
+    return mahalanobis2(lines_[a].estimate, lines_[b].estimate) <= (same_way ? kApart : kAgreeing);
   }
 
   /// One line of both, if it explains their views.
@@ -228,7 +231,7 @@ class LineMerger {
   const KeyframeCameras& cameras_;
   const LineFitParams& fit_;
   const MergeParams& params_;
-  double drift_px_;
+  MergeAllowance allowance_;
   std::vector<LineRecord>& lines_;
   MergedRecords merged_;
   PairAnswers refused_;  ///< whether the two cannot be one
@@ -239,9 +242,9 @@ class LineMerger {
 
 }  // namespace
 
-int mergeLines(const KeyframeCameras& cameras, const LineFitParams& fit, const MergeParams& params, double drift_px,
-               std::vector<LineRecord>& lines) {
-  return LineMerger(cameras, fit, params, drift_px, lines).run();
+int mergeLines(const KeyframeCameras& cameras, const LineFitParams& fit, const MergeParams& params,
+               const MergeAllowance& allowance, std::vector<LineRecord>& lines) {
+  return LineMerger(cameras, fit, params, allowance, lines).run();
 }
 
 }  // namespace lintel

@@ -126,13 +126,13 @@ LineMap MapBuilder::build() const {
 void prepareMaterial(const MapParams& params, MapMaterial& material) {
   MapFitting fitting(params, material);
   fitting.fitAll();
-  fitting.merge();
+  fitting.merge({0, true});
   if (params.degenerate_lines == "constrain") fitting.tie();
 }
 
 void settleLines(const MapParams& params, MapMaterial& material) {
   MapFitting fitting(params, material);
-  if (params.merge.lines) fitting.mergeLines();
+  if (params.merge.lines) fitting.mergeLines({0, true});
   if (params.degenerate_lines != "constrain") return;
   fitting.tie();
   fitting.align();

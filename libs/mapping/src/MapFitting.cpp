@@ -2,7 +2,6 @@
 #include "MapFitting.h"
 
 #include "LineGroups.h"
-#include "LineMerging.h"
 #include "LineSplitting.h"
 #include "LineTying.h"
 #include "PointJoining.h"
@@ -24,15 +23,15 @@ void MapFitting::fitAll() {
   for (LineRecord& line : material_.lines) fitLine(cameras_, line_, line);
 }
 
-int MapFitting::merge(double drift_px) {
+int MapFitting::merge(const MergeAllowance& allowance) {
   int merged = 0;
   if (params_.merge.points) merged += mergePoints(cameras_, point_, params_.merge, material_.points);
-  if (params_.merge.lines) merged += mergeLines(drift_px);
+  if (params_.merge.lines) merged += mergeLines(allowance);
   return merged;
 }
 
-int MapFitting::mergeLines(double drift_px) {
-  return lintel::mergeLines(cameras_, line_, params_.merge, drift_px, material_.lines);
+int MapFitting::mergeLines(const MergeAllowance& allowance) {
+  return lintel::mergeLines(cameras_, line_, params_.merge, allowance, material_.lines);
 }
 
 int MapFitting::join(const std::vector<PointJoin>& joins, double most_px, double sigma_px) {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include "LineMerging.h"
 #include "PointFitting.h"
 #include "lintel/mapping/LineFitting.h"
 #include "lintel/mapping/LineMap.h"
@@ -17,11 +18,11 @@ class MapFitting {
   /// Every point and line anew from all its views, outliers included, as they may fit the present poses.
   void fitAll();
 
-  /// Joins estimates of the same landmark; returns how many were joined to others. `drift_px`: see mergeLines.
-  int merge(double drift_px = 0);
+  /// Joins estimates of the same landmark; returns how many were joined to others.
+  int merge(const MergeAllowance& allowance);
 
   /// The same, of lines only.
-  int mergeLines(double drift_px = 0);
+  int mergeLines(const MergeAllowance& allowance = {});
 
   /// See joinPoints().
   int join(const std::vector<PointJoin>& joins, double most_px, double sigma_px);

@@ -19,7 +19,7 @@ class MergingTest : public testing::Test {
   int merge(std::vector<LineRecord>& lines) const {
     const KeyframeCameras cameras(material_);
     for (LineRecord& line : lines) EXPECT_TRUE(fitLine(cameras, {}, line));
-    return mergeLines(cameras, {}, params_, drift_px_, lines);
+    return mergeLines(cameras, {}, params_, allowance_, lines);
   }
   int merge(std::vector<PointRecord>& points) const {
     const KeyframeCameras cameras(material_);
@@ -33,7 +33,7 @@ class MergingTest : public testing::Test {
 
   MapMaterial material_ = materialAlongX(8);
   MergeParams params_;
-  double drift_px_ = 0;
+  MergeAllowance allowance_;
   const Segment3 upright_{{1.8, -0.7, 4}, {1.9, 0.6, 4.1}};
 };
 
@@ -106,13 +106,13 @@ TEST_F(MergingTest, APassThatDriftedIsJoinedWhereTheTrajectoryMayStillMove) {
   };
   std::vector<LineRecord> lines = passes();
   EXPECT_EQ(merge(lines), 0) << "four centimetres are 4.6 pixels";
-  drift_px_ = 4;
+  allowance_.drift_px = 4;
   lines = passes();
   EXPECT_EQ(merge(lines), 1);
 }
 
 TEST_F(MergingTest, ADriftedPassBesideTwoLinesIsNotMerged) {
-  drift_px_ = 4;
+  allowance_.drift_px = 4;
   std::vector<LineRecord> lines{lineOf(material_, 1, upright_, 0, 3),
                                 lineOf(material_, 2, besides(upright_, 0.07), 0, 3),
                                 lineOf(material_, 3, besides(upright_, 0.03), 4, 7)};
@@ -120,11 +120,40 @@ TEST_F(MergingTest, ADriftedPassBesideTwoLinesIsNotMerged) {
 }
 
 TEST_F(MergingTest, ADriftedPassWithTheBrighterSideOnTheOtherSideIsAnotherEdge) {
-  drift_px_ = 4;
+  allowance_.drift_px = 4;
   const Segment3 other = besides(upright_, 0.04);
   std::vector<LineRecord> lines{lineOf(material_, 1, upright_, 0, 3),
                                 lineOf(material_, 2, Segment3{other.end, other.start}, 4, 7)};
   EXPECT_EQ(merge(lines), 0);
+}
+
+/// The edge at `segment`, seen later with the brighter side on the other side.
+LineRecord otherContrast(const MapMaterial& material, const Segment3& segment) {
+  return lineOf(material, 2, Segment3{segment.end, segment.start}, 4, 7);
+}
+
+TEST_F(MergingTest, TheOtherEdgeOfABoardIsAnotherLineAlsoWhereOneLineWouldExplainBoth) {
+  std::vector<LineRecord> lines{lineOf(material_, 1, upright_, 0, 3), otherContrast(material_, upright_)};
+  EXPECT_EQ(merge(lines), 0);
+}
+
+TEST_F(MergingTest, PiecesOfAnEdgeWhoseContrastChangesAreJoinedWhereTheyAgree) {
+  allowance_.contrast = true;
+  std::vector<LineRecord> lines{lineOf(material_, 1, upright_, 0, 3), otherContrast(material_, upright_)};
+  EXPECT_EQ(merge(lines), 1);
+  const auto boards = [&](double thick_m) {
+    std::vector<LineRecord> edges{lineOf(material_, 1, upright_, 0, 3),
+                                  otherContrast(material_, besides(upright_, thick_m))};
+    for (LineRecord& edge : edges)
+      for (LineView& view : edge.views) view.sigma_px = 0.05f;
+    return edges;
+  };
+  lines = boards(0.005);
+  EXPECT_EQ(merge(lines), 0) << "half a pixel: ten standard deviations";
+  allowance_.contrast = false;
+  lines = boards(0.005);
+  lines[1] = lineOf(material_, 2, besides(upright_, 0.005), 4, 7);
+  EXPECT_EQ(merge(lines), 1) << "with the same contrast one line explains both";
 }
 
 TEST_F(MergingTest, ATrackThatTheLineDoesNotExplainIsTakenOutAgain) {
