@@ -126,7 +126,7 @@ LineMap MapBuilder::build() const {
 void prepareMaterial(const MapParams& params, MapMaterial& material) {
   MapFitting fitting(params, material);
   fitting.fitAll();
-  fitting.merge({0, true});
+  fitting.merge({});
   if (params.degenerate_lines == "constrain") fitting.tie();
 }
 

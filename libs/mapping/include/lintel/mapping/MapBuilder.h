@@ -51,8 +51,8 @@ class MapBuilder {
 /// landmark.
 void prepareMaterial(const MapParams& params, MapMaterial& material);
 
-/// After lines were added to a prepared material: joins those that are estimates of the same edge, and constrains
-/// degenerate ones.
+/// After lines were added to a prepared material: joins those that are estimates of the same edge, also pieces of
+/// opposite contrast, and constrains degenerate ones.
 void settleLines(const MapParams& params, MapMaterial& material);
 
 /// What a map keeps of the material that it was drawn from: keyframes, points and lines with the views that agree.
