@@ -142,7 +142,9 @@ bool BatchRefinement::adjustOnce(int round, const std::vector<PointJoin>& joins,
   // The causal poses drift: estimates of the same landmark coincide only after a first adjustment.
   // Passes that come closer now can be told apart better in the next round; the last one must be right.
   const bool last = round + 1 == params_.rounds;
-  if (round > 0) report.merged += fitting.merge({last ? 0 : map_.merge.max_drift_px});
+  MergeAllowance allowance;
+  if (!last) allowance.drift_px = map_.merge.max_drift_px;
+  if (round > 0) report.merged += fitting.merge(allowance);
   const std::size_t separate = material.points.size();
   const double relative = round / std::max(1.0, params_.rounds - 1.0);
   report.joined =

@@ -132,7 +132,9 @@ void prepareMaterial(const MapParams& params, MapMaterial& material) {
 
 void settleLines(const MapParams& params, MapMaterial& material) {
   MapFitting fitting(params, material);
-  if (params.merge.lines) fitting.mergeLines({0, true});
+  MergeAllowance allowance;
+  allowance.contrast = true;
+  if (params.merge.lines) fitting.mergeLines(allowance);
   if (params.degenerate_lines != "constrain") return;
   fitting.tie();
   fitting.align();

@@ -142,6 +142,7 @@ std::string scriptOf(const Figure& figure) {
   return script.empty() ? "" : script.text(settingsOf(figure));
 }
 
+/// By a name of its input: what it calls "-" it reads byte by byte.
 ChildResult runGnuplot(const std::string& script) {
   return runChild({{"gnuplot", "-d", "/dev/stdin"}, script, "", {"LC_ALL=C.UTF-8"}});
 }
