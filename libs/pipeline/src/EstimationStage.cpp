@@ -5,6 +5,7 @@
 
 #include "lintel/core/Formatted.h"
 #include "lintel/core/FreeMemory.h"
+#include "lintel/mapping/FarLines.h"
 #include "lintel/mapping/ImagePoses.h"
 #include "lintel/mapping/LineSpacing.h"
 #include "lintel/mapping/MapStructure.h"
@@ -132,12 +133,12 @@ void EstimationStage::refineMap(MapMaterial& material, const FinishOptions& opti
   if (result_.refinement.accepted) loops_.measureDrift(material, result_.loops);
 }
 
-void EstimationStage::densifyMap(MapMaterial& material, const FinishOptions& options) {
+void EstimationStage::densifyMap(const MapParams& params, MapMaterial& material, const FinishOptions& options) {
   returnFreeMemory();
   const double before_ms = processTimeMs();  // it takes several threads
-  result_.densification = densify(configuration_.densification, configuration_.map, edges_->edges(), material,
-                                  options.threads, options.densification);
-  settleLines(configuration_.map, material);
+  result_.densification =
+      densify(configuration_.densification, params, edges_->edges(), material, options.threads, options.densification);
+  settleLines(params, material);
   result_.statistics.densification.add(processTimeMs() - before_ms);
 }
 
@@ -156,11 +157,15 @@ void EstimationStage::finishMap(const FinishOptions& options) {
     result_.time_offset_s = material.time_offset_s;
     for (const auto& [t_ns, T_w_b] : posesOfImages(material)) result_.refined_trajectory.push_back({t_ns, T_w_b});
   }
-  if (edges_ && !result_.cancelled) densifyMap(material, options);
-  result_.map = drawMap(configuration_.map, material);
+  MapParams params = withFarLines(configuration_.map, material, configuration_.map.least_share);
+  if (edges_ && !result_.cancelled) {
+    densifyMap(params, material, options);
+    params = withFarLines(params, material, params.least_share);
+  }
+  result_.map = drawMap(params, material);
   result_.map.configuration = writeConfiguration(configuration_);
   keepForMerging(material);
-  result_.lines_beside = spaceLines(configuration_.map, result_.map);
+  result_.lines_beside = spaceLines(params, result_.map);
   findStructure(result_.map);
 }
 

@@ -33,7 +33,7 @@ class EstimationStage {
   void finishMap(const FinishOptions& options);
   void keepForMerging(const MapMaterial& material);
   void refineMap(MapMaterial& material, const FinishOptions& options);
-  void densifyMap(MapMaterial& material, const FinishOptions& options);
+  void densifyMap(const MapParams& params, MapMaterial& material, const FinishOptions& options);
   void addPoses(const WindowUpdate& update);
   void withdrawStart();
   void count(const WindowUpdate& update);

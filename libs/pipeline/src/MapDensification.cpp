@@ -7,6 +7,7 @@
 #include <set>
 
 #include "MapDamage.h"
+#include "lintel/mapping/FarLines.h"
 #include "lintel/mapping/LineSpacing.h"
 #include "lintel/mapping/MapBuilder.h"
 #include "lintel/mapping/MapStructure.h"
@@ -109,8 +110,8 @@ MapDensification densifyMap(const LineMap& map, Recording& recording, const MapD
   MapDensification result;
   result.refusal = objection(map);
   if (!result.refusal.empty()) return result;
-  const MapParams& params = options.configuration.map;
-  MapMaterial material = materialOf(params, map);
+  MapMaterial material = materialOf(options.configuration.map, map);
+  MapParams params = withFarLines(options.configuration.map, material, kShareOfOwnLines);
   if (!options.poses.empty()) {
     result.keyframes_without_pose = takePoses(options.poses, material);
     prepareMaterial(params, material);
@@ -123,6 +124,7 @@ MapDensification densifyMap(const LineMap& map, Recording& recording, const MapD
   };
   result.report = densify(options.configuration.densification, params, edges, material, options.threads, searching);
   settleLines(params, material);
+  params = withFarLines(params, material, params.least_share);
   result.map = drawMap(params, material);
   spaceLines(params, result.map);
   findStructure(result.map);

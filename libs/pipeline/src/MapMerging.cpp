@@ -11,6 +11,7 @@
 #include "MapTimes.h"
 #include "lintel/core/Quantiles.h"
 #include "lintel/geometry/Rotation.h"
+#include "lintel/mapping/FarLines.h"
 #include "lintel/mapping/LineSpacing.h"
 #include "lintel/mapping/MapBuilder.h"
 
@@ -181,6 +182,7 @@ MapMerging mergeMaps(const LineMap& first, const LineMap& second, const MapMergi
   const Configuration& configuration = options.configuration;
   Together together = putTogether(configuration.map, first, second);
   MapMaterial& material = together.material;
+  const MapParams drawn = withFarLines(configuration.map, material, kShareOfOwnLines);
   const Poses before = camerasOf(material);
   LoopResult loops;
   std::unordered_map<TrackId, Eigen::Vector3d> points_w;
@@ -205,7 +207,7 @@ MapMerging mergeMaps(const LineMap& first, const LineMap& second, const MapMergi
     result.refusal = "after the adjustment the common places are still apart";
     return result;
   }
-  result.map = drawTogether(configuration.map, together);
+  result.map = drawTogether(drawn, together);
   result.map.configuration = writeConfiguration(configuration);
   return result;
 }

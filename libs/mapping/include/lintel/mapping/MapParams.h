@@ -75,6 +75,7 @@ struct MapParams {
   /// Of a segment's ends, across it, d away from where it was seen:
   /// at most min(max(max_sigma_m, max_far_sigma d), max_relative_sigma d).
   double max_sigma_m = 0.03, max_far_sigma = 0.003, max_relative_sigma = 0.02;
+  double least_share = 0.5;  ///< of the length known to max_relative_sigma: max_far_sigma is raised where less is drawn
   double point_max_relative_sigma = 0.20;
   double coverage = 0.2;  ///< a piece of a line is drawn when this share of the views that would see it (and two) do
   MergeParams merge;
@@ -96,6 +97,7 @@ struct MapParams {
     field("max_sigma_m", max_sigma_m, Range{1e-6, 1000});
     field("max_far_sigma", max_far_sigma, Range{0, 100});
     field("max_relative_sigma", max_relative_sigma, Range{1e-6, 100});
+    field("least_share", least_share, Range{0, 1});
     field("point_max_relative_sigma", point_max_relative_sigma, Range{1e-6, 100});
     field("coverage", coverage, Range{0, 1});
     field("merge", merge);
