@@ -82,6 +82,45 @@ TEST(MapStructure, WhatIsLargeAndHasNothingBehindIsFloorCeilingAndWalls) {
     EXPECT_GT(plane.normal_w.dot(map.keyframes.front().T_w_b.p), plane.offset_m) << plane.name;
 }
 
+/// What is seen, and how well, from as much farther away.
+void enlarge(double times, LineMap& map) {
+  const Eigen::Vector4f scale(static_cast<float>(times), static_cast<float>(times), 1, 1);
+  for (MapLine& line : map.lines) {
+    line.segment_w = {times * line.segment_w.start, times * line.segment_w.end};
+    line.covariance = scale.asDiagonal() * line.covariance * scale.asDiagonal();
+  }
+  for (MapPoint& point : map.points) point.p_w *= times, point.sigma_distance_m *= times;
+  for (MapKeyframe& keyframe : map.keyframes) keyframe.T_w_b.p *= times;
+}
+
+TEST(MapStructure, ALargePlaceHasWhatASmallOneHas) {
+  LineMap map;
+  addBox(map, {0, 0, 0}, {15, 12, 9});
+  addCamera(map, {3, 3, 4.5});
+  for (MapLine& line : map.lines) {
+    line.observations.emplace_back();  // of keyframe 0
+    line.covariance *= 0.1F;
+  }
+  map.points.emplace_back();
+  map.points.back().p_w = {8, 0.2, 0.003};
+  findStructure(map);
+  const LineMap small = map;
+  ASSERT_EQ(small.corners.size(), 8u);
+  enlarge(20, map);
+  findStructure(map);
+  ASSERT_EQ(map.corners.size(), small.corners.size());
+  for (std::size_t i = 0; i < map.corners.size(); ++i) {
+    EXPECT_LT((map.corners[i].p_w - 20 * small.corners[i].p_w).norm(), 1e-6);
+    EXPECT_EQ(map.corners[i].lines, small.corners[i].lines);
+    EXPECT_NEAR(map.corners[i].sigma_m, 20 * small.corners[i].sigma_m, 0.2 * 20 * small.corners[i].sigma_m);
+  }
+  EXPECT_EQ(namesOf(map), namesOf(small));
+  for (const MapPlane& plane : map.planes)
+    if (plane.name == "ceiling") EXPECT_NEAR(std::abs(plane.offset_m), 180, 1e-6);
+  for (const MapPlane& plane : map.planes)
+    EXPECT_EQ(plane.points.size(), plane.name == "floor" ? 1u : 0u) << plane.name;
+}
+
 TEST(MapStructure, PiecesOfAWallAreOnePlane) {
   LineMap map;
   addCamera(map, {1, 1, 1});
