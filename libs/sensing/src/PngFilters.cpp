@@ -13,7 +13,7 @@ namespace {
 
 enum Filter : std::uint8_t { kNone, kSub, kUp, kAverage, kPaeth };
 
-constexpr std::size_t kLanes = 16, kBlock = 8;  // rows at once; rows and columns that are transposed at once
+constexpr std::size_t kLanes = 16;  // rows at once; rows and columns that are transposed at once
 // vectors as arguments: the functions are inlined, no other program calls them
 #pragma GCC diagnostic ignored "-Wpsabi"
 using Lanes = std::int16_t __attribute__((vector_size(2 * kLanes)));
@@ -29,33 +29,24 @@ using Bytes = std::uint8_t __attribute__((vector_size(kLanes)));
   return to_corner < distance ? corner : nearer;
 }
 
-using Twice = std::uint8_t __attribute__((vector_size(2 * kBlock)));
-
-/// Eight rows of eight bytes become eight columns.
+/// Sixteen rows of sixteen bytes become sixteen columns: four times the first half is interleaved with the second.
 void transpose(const std::uint8_t* from, std::size_t from_step, std::uint8_t* to, std::size_t to_step) {
-  const auto pair = [&](std::size_t i) {  // rows i and i + 1, byte by byte
-    Twice a{}, b{};
-    std::memcpy(&a, from + i * from_step, kBlock);
-    std::memcpy(&b, from + (i + 1) * from_step, kBlock);
-    return __builtin_shufflevector(a, b, 0, 16, 1, 17, 2, 18, 3, 19, 4, 20, 5, 21, 6, 22, 7, 23);
-  };
-  const auto low2 = [](Twice a, Twice b) {
-    return __builtin_shufflevector(a, b, 0, 1, 16, 17, 2, 3, 18, 19, 4, 5, 20, 21, 6, 7, 22, 23);
-  };
-  const auto high2 = [](Twice a, Twice b) {
-    return __builtin_shufflevector(a, b, 8, 9, 24, 25, 10, 11, 26, 27, 12, 13, 28, 29, 14, 15, 30, 31);
-  };
-  const auto low4 = [](Twice a, Twice b) {
-    return __builtin_shufflevector(a, b, 0, 1, 2, 3, 16, 17, 18, 19, 4, 5, 6, 7, 20, 21, 22, 23);
-  };
-  const auto high4 = [](Twice a, Twice b) {
-    return __builtin_shufflevector(a, b, 8, 9, 10, 11, 24, 25, 26, 27, 12, 13, 14, 15, 28, 29, 30, 31);
-  };
-  const Twice a = pair(0), b = pair(2), c = pair(4), d = pair(6);
-  const Twice two[4] = {low4(low2(a, b), low2(c, d)), high4(low2(a, b), low2(c, d)), low4(high2(a, b), high2(c, d)),
-                        high4(high2(a, b), high2(c, d))};
-  for (std::size_t i = 0; i < kBlock; ++i)
-    std::memcpy(to + i * to_step, reinterpret_cast<const std::uint8_t*>(two) + i * kBlock, kBlock);
+  Bytes rows[kLanes], mixed[kLanes];
+#pragma GCC unroll 16
+  for (std::size_t i = 0; i < kLanes; ++i) std::memcpy(&rows[i], from + i * from_step, kLanes);
+#pragma GCC unroll 4
+  for (int pass = 0; pass < 4; ++pass) {
+#pragma GCC unroll 8
+    for (std::size_t i = 0; i < kLanes / 2; ++i) {
+      const Bytes a = rows[i], b = rows[i + kLanes / 2];
+      mixed[2 * i] = __builtin_shufflevector(a, b, 0, 16, 1, 17, 2, 18, 3, 19, 4, 20, 5, 21, 6, 22, 7, 23);
+      mixed[2 * i + 1] = __builtin_shufflevector(a, b, 8, 24, 9, 25, 10, 26, 11, 27, 12, 28, 13, 29, 14, 30, 15, 31);
+    }
+#pragma GCC unroll 16
+    for (std::size_t i = 0; i < kLanes; ++i) rows[i] = mixed[i];
+  }
+#pragma GCC unroll 16
+  for (std::size_t i = 0; i < kLanes; ++i) std::memcpy(to + i * to_step, &rows[i], kLanes);
 }
 
 /// What each row's filter says of a pixel, from its neighbours: all ones in the lanes of the rows that have the filter.
@@ -97,11 +88,7 @@ bool sixteenRows(const std::uint8_t* rows, std::size_t width, const std::uint8_t
   steps.resize(kLanes * (width + kLanes));
   std::fill_n(steps.begin(), kLanes * kLanes, std::uint8_t{0});  // before a row begins its pixels count as 0
   // steps at which every row is within its pixels, in blocks; the others one by one
-  const std::size_t begin = kLanes - 1, end = begin + (std::max(width, begin) - begin) / kBlock * kBlock;
-  const auto forBlocks = [&](const auto& visit) {
-    for (std::size_t i = 0; i < kLanes; i += kBlock)
-      for (std::size_t t = begin; t < end; t += kBlock) visit(&steps[kLanes * t + i], i, t - i);
-  };
+  const std::size_t begin = kLanes - 1, end = begin + (std::max(width, begin) - begin) / kLanes * kLanes;
   const auto forOthers = [&](const auto& visit) {
     for (std::size_t i = 0; i < kLanes; ++i)
       for (std::size_t t = i; t < i + width; ++t)
@@ -110,14 +97,10 @@ bool sixteenRows(const std::uint8_t* rows, std::size_t width, const std::uint8_t
         else
           t = end - 1;
   };
-  forBlocks([&](std::uint8_t* block, std::size_t i, std::size_t x) {
-    transpose(rows + i * (width + 1) + 1 + x, width, block, kLanes);
-  });
+  for (std::size_t t = begin; t < end; t += kLanes) transpose(rows + 1 + t, width, &steps[kLanes * t], kLanes);
   forOthers([&](std::uint8_t& lane, std::size_t i, std::size_t x) { lane = rows[i * (width + 1) + 1 + x]; });
   follow(guess, above, width, steps.data());
-  forBlocks([&](const std::uint8_t* block, std::size_t i, std::size_t x) {
-    transpose(block, kLanes, pixels + i * width + x, width - 1);
-  });
+  for (std::size_t t = begin; t < end; t += kLanes) transpose(&steps[kLanes * t], kLanes, pixels + t, width - 1);
   forOthers([&](const std::uint8_t& lane, std::size_t i, std::size_t x) { pixels[i * width + x] = lane; });
   return true;
 }
