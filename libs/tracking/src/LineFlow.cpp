@@ -133,6 +133,8 @@ PredictedLine LineFlow::fit(const Samples& samples, std::size_t index, double ju
                             const std::vector<cv::Point2f>& to, const std::vector<unsigned char>& found) const {
   const ImageLine& guess = samples.guessed[index];
   std::vector<Eigen::Vector2d> guessed_u, found_u;
+  guessed_u.reserve(samples.first[index + 1] - samples.first[index]);
+  found_u.reserve(samples.first[index + 1] - samples.first[index]);
   for (std::size_t i = samples.first[index]; i < samples.first[index + 1]; ++i) {
     const Eigen::Vector2d px = toEigen(to[i]);
     if (!found[i] || !camera_.uses(px, 1) || camera_.mask().covers(toEigen(samples.from[i])) ||
