@@ -295,7 +295,7 @@ TEST(RunCheck, WhereFewFramesHaveAPoseASmallerContradictionCounts) {
 }
 
 /// Half a minute of turning about x; each second keyframe jumps.
-std::string verdictWithAccelerometer(bool swapped, double jump_m) {
+std::string verdictWithAccelerometer(bool swapped, double jump_m, const RefinementReport& refinement = {}) {
   RunCheck check{givenRig()};
   OdometryStatistics statistics;
   std::vector<std::uint8_t> pixels;
@@ -329,7 +329,7 @@ std::string verdictWithAccelerometer(bool swapped, double jump_m) {
   statistics.last_frame_ns = 30'000'000'000;
   statistics.first_start_s = 0;
   statistics.frames_with_pose = 300;
-  return check.verdict(statistics, givenRig());
+  return check.verdict(statistics, givenRig(), refinement);
 }
 
 TEST(RunCheck, InterchangedAxesOfTheAccelerometerThatTheEstimateCouldNearlyFollow) {
@@ -337,6 +337,13 @@ TEST(RunCheck, InterchangedAxesOfTheAccelerometerThatTheEstimateCouldNearlyFollo
   EXPECT_EQ(verdictWithAccelerometer(false, kJump_m).find("columns"), std::string::npos);
   const std::string verdict = verdictWithAccelerometer(true, kJump_m);
   EXPECT_NE(verdict.find("columns"), std::string::npos) << verdict;
+  RefinementReport refinement;
+  refinement.imu_after = 0.2;
+  EXPECT_NE(verdictWithAccelerometer(true, kJump_m, refinement), "") << "not accepted";
+  refinement.accepted = true;
+  EXPECT_EQ(verdictWithAccelerometer(true, kJump_m, refinement), "") << "a drone far above the ground";
+  refinement.imu_after = 0.8;
+  EXPECT_NE(verdictWithAccelerometer(true, kJump_m, refinement), "") << "could be followed by the refinement, too";
 }
 
 TEST(RunCheck, StartsThatDoNotLast) { EXPECT_NE(verdictOf(9.81, 0, 2, 0.2).find("did not last"), std::string::npos); }
