@@ -14,7 +14,7 @@ namespace lintel {
 
 namespace {
 
-constexpr double kNearest_m = 2, kFarthest_m = 8;  // between these half of the lines are in rooms and halls
+constexpr double kNearest_m = 2, kFarthest_m = 8;  // the lines of rooms and halls are seen from between these, median
 
 /// How large the place is against rooms and halls, for whose corners and planes all lengths of the search are made: by
 /// the distances from which its lines were seen.

@@ -10,7 +10,7 @@ namespace lintel {
 constexpr double kShareOfOwnLines = 0.9;
 
 /// Where everything is far for the way that the camera goes, hardly a line is known to `max_sigma_m`. Gives limits with
-/// which at least `share` of the length that is known to `max_relative_sigma` of its distance is part of the map:
+/// which drawMap() draws at least `share` of the length that is known to `max_relative_sigma` of its distance:
 /// `max_far_sigma` is raised where it has to be.
 MapParams withFarLines(const MapParams& params, const MapMaterial& material, double share);
 
