@@ -4,9 +4,9 @@
 #include <ceres/cost_function.h>
 #include <ceres/loss_function.h>
 
+#include <boost/container/small_vector.hpp>
 #include <memory>
 #include <type_traits>
-#include <vector>
 
 #include "lintel/estimator/SlidingWindow.h"
 #include "lintel/factors/ImageFactor.h"
@@ -15,14 +15,22 @@
 
 namespace lintel {
 
+/// The blocks that a residual depends on; the four of a sighting lie in the factor itself.
+using FactorBlocks = boost::container::small_vector<BlockKey, 4>;
+
 /// A residual of the window: its cost, its loss (null: none) and the blocks it depends on.
 struct Factor {
   const ceres::CostFunction* cost = nullptr;
   const ceres::LossFunction* loss = nullptr;
-  std::vector<BlockKey> blocks;
+  FactorBlocks blocks;
   /// Of an image's residuals with a point or a line; the same in all of a track.
   const TrackNoise* noise = &kWhiteNoise;
 };
+
+/// A prior as a residual; it must outlive the factor.
+inline Factor factorOf(const WindowPrior& prior) {
+  return {prior.factor.get(), nullptr, {prior.blocks.begin(), prior.blocks.end()}};
+}
 
 /// The manifold of a kind of block; shared, stateless.
 const std::shared_ptr<const StateManifold>& manifoldOf(BlockKey::Kind kind);

@@ -8,6 +8,7 @@
 #include "lintel/factors/AxesImuFactor.h"
 #include "lintel/factors/StructuralFactor.h"
 #include "lintel/factors/VanishingFactor.h"
+#include "window/LastingPoints.h"
 
 namespace lintel {
 
@@ -55,14 +56,29 @@ void WindowFactors::addMeasurements(const EstimatorParams& params) {
   addLines(params.degeneracy);
 }
 
-void WindowFactors::add(std::unique_ptr<ceres::CostFunction> cost, std::vector<BlockKey> blocks,
+void WindowFactors::addMeasurementsWithOldest(const EstimatorParams& params) {
+  addImu();
+  addRest(params);
+  const FrameId oldest = window_.frames.front().id;
+  const auto sees = [oldest](const auto& track) {
+    return !track.sightings.empty() && track.sightings.front().frame == oldest;
+  };
+  const std::set<BlockKey> in_priors = pointsInPriors(window_);
+  for (const auto& [id, track] : window_.points)
+    if (track.triangulated && (sees(track) || in_priors.count({BlockKey::kPoint, id}) > 0)) addPoint(track);
+  const CameraPoses poses(window_);
+  for (const auto& [id, track] : window_.lines)
+    if (sees(track) && entersProblem(track, params.degeneracy)) addLine(track, poses, params.degeneracy);
+}
+
+void WindowFactors::add(std::unique_ptr<ceres::CostFunction> cost, FactorBlocks blocks,
                         const ceres::LossFunction* loss) {
   factors_.push_back({cost.get(), loss, std::move(blocks)});
   others_.push_back(std::move(cost));
 }
 
 void WindowFactors::addPriors() {
-  for (const WindowPrior& prior : window_.priors) factors_.push_back({prior.factor.get(), nullptr, prior.blocks});
+  for (const WindowPrior& prior : window_.priors) factors_.push_back(factorOf(prior));
 }
 
 void WindowFactors::addCalibrationPriors(const CalibrationParams& params, const Pose& T_b_c_calibrated) {

@@ -31,6 +31,10 @@ class WindowFactors {
   /// of residual is added here.
   void addMeasurements(const EstimatorParams& params);
 
+  /// Of these, those that may become part of the prior when the oldest frame leaves: of points and lines only the ones
+  /// that it sees, and points that priors know.
+  void addMeasurementsWithOldest(const EstimatorParams& params);
+
   void addPriors();
   /// Of what is refined; the solver holds the rest (holdCalibration). They have a robust loss, the lever arm's once the
   /// scale is known: before, as at a take-off, one that leaves its prior explains as much as another scale does.
@@ -49,8 +53,7 @@ class WindowFactors {
                     const DegeneracyParams& degeneracy);
 
   /// Any residual. `loss` must outlive the factors.
-  void add(std::unique_ptr<ceres::CostFunction> cost, std::vector<BlockKey> blocks,
-           const ceres::LossFunction* loss = nullptr);
+  void add(std::unique_ptr<ceres::CostFunction> cost, FactorBlocks blocks, const ceres::LossFunction* loss = nullptr);
 
   const std::vector<Factor>& factors() const { return factors_; }
 

@@ -26,7 +26,7 @@ std::vector<WindowPrior> takePriors(SlidingWindow& window, const std::set<BlockK
 
 void marginaliseWith(SlidingWindow& window, std::vector<Factor> factors, const std::vector<WindowPrior>& priors,
                      const std::set<BlockKey>& dropped, const Staying& staying) {
-  for (const WindowPrior& prior : priors) factors.push_back({prior.factor.get(), nullptr, prior.blocks});
+  for (const WindowPrior& prior : priors) factors.push_back(factorOf(prior));
   if (auto prior = marginalise(window, factors, dropped, staying)) window.priors.push_back(std::move(*prior));
 }
 
@@ -108,7 +108,7 @@ void marginaliseOldest(SlidingWindow& window, const std::vector<Factor>& measure
 
 void marginaliseOldest(SlidingWindow& window, const EstimatorParams& params, double scale_walk) {
   WindowFactors factors(window, params.factors);
-  factors.addMeasurements(params);
+  factors.addMeasurementsWithOldest(params);
   marginaliseOldest(window, factors.factors(), params.landmarks, scale_walk);
 }
 

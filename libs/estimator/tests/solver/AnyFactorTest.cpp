@@ -109,7 +109,7 @@ class AnyFactorTest : public testing::Test {
   }
 
   void addMix(const std::vector<BlockKey>& blocks, const ceres::LossFunction* loss = nullptr) {
-    factors_->add(mixOf(blocks), blocks, loss);
+    factors_->add(mixOf(blocks), {blocks.begin(), blocks.end()}, loss);
   }
 
   SlidingWindow window_{eurocRig()};
@@ -181,8 +181,7 @@ TEST_F(AnyFactorTest, IsSolved) {
 
 /// Information about height in a prior.
 double heightInformation(SlidingWindow& window, const WindowPrior& prior, FrameId frame) {
-  const NormalEquations eq =
-      linearise(window, {{prior.factor.get(), nullptr, prior.blocks}}, {{BlockKey::kPose, frame}});
+  const NormalEquations eq = linearise(window, {factorOf(prior)}, {{BlockKey::kPose, frame}});
   return eq.H(2, 2);
 }
 

@@ -112,7 +112,7 @@ TEST_F(MarginalizerTest, GradientIsThatOfExplicitElimination) {
   const Eigen::VectorXd expected = withoutFirst(eq, eq.offsets[dropped.size()]).b;
   const auto prior = marginalise(window_, factors_->factors(), dropped);
   ASSERT_TRUE(prior);
-  const NormalEquations again = linearise(window_, {{prior->factor.get(), nullptr, prior->blocks}}, {});
+  const NormalEquations again = linearise(window_, {factorOf(*prior)}, {});
   ASSERT_EQ(again.blocks, prior->blocks);
   EXPECT_LT((again.b - expected).norm(), 1e-6 * expected.norm());
 }
@@ -134,7 +134,7 @@ TEST_F(MarginalizerTest, PointsThatStayMayGoLater) {
   const auto with_points = marginalise(window_, factors.factors(), without_points, {points});
   ASSERT_TRUE(at_once && with_points);
   ASSERT_EQ(with_points->blocks.size(), at_once->blocks.size() + 3);
-  const auto later = marginalise(window_, {{with_points->factor.get(), nullptr, with_points->blocks}}, points);
+  const auto later = marginalise(window_, {factorOf(*with_points)}, points);
   ASSERT_TRUE(later);
   ASSERT_EQ(later->blocks, at_once->blocks);
   const Eigen::MatrixXd &expected = at_once->factor->information(), &H = later->factor->information();
@@ -209,7 +209,7 @@ TEST_F(MarginalizerTest, AScaleThatWalksAddsTheVarianceOfWhatAScaledWindowDiffer
   const PriorFactor before(blocks, A, Eigen::VectorXd::LinSpaced(n, -1, 1));
   Staying staying{{point}};
   staying.scale_walk = 0.3;
-  const auto after = marginalise(window_, {{&before, nullptr, keys}}, {}, staying);
+  const auto after = marginalise(window_, {{&before, nullptr, {keys.begin(), keys.end()}}}, {}, staying);
   ASSERT_TRUE(after);
   ASSERT_EQ(after->blocks, keys);
   const Eigen::MatrixXd unit = Eigen::MatrixXd::Identity(n, n);
@@ -229,7 +229,7 @@ TEST_F(MarginalizerTest, NothingStaysNothingComes) {
 
 /// How much a prior resists moving (turning about z) the whole world, relative to its strongest direction.
 double resistance(SlidingWindow& window, const WindowPrior& prior, const Eigen::Vector3d& shift, double yaw_rate) {
-  const NormalEquations eq = linearise(window, {{prior.factor.get(), nullptr, prior.blocks}}, {});
+  const NormalEquations eq = linearise(window, {factorOf(prior)}, {});
   Eigen::VectorXd direction = Eigen::VectorXd::Zero(eq.H.rows());
   const Eigen::Vector3d turn = yaw_rate * Eigen::Vector3d::UnitZ();
   for (std::size_t i = 0; i < eq.blocks.size(); ++i) {
@@ -278,7 +278,7 @@ TEST(MarginalisedPrior, LeavesPositionAndYawFree) {
     EXPECT_LT(resistance(window, prior, Eigen::Vector3d::UnitZ(), 0), 1e-6) << round;
     EXPECT_LT(resistance(window, prior, Eigen::Vector3d::Zero(), 1), 1e-6) << round;
     // the measure is not blind: one frame alone may not move
-    const NormalEquations eq = linearise(window, {{prior.factor.get(), nullptr, prior.blocks}}, {});
+    const NormalEquations eq = linearise(window, {factorOf(prior)}, {});
     const auto pose = std::find_if(eq.blocks.begin(), eq.blocks.end(),
                                    [](const BlockKey& key) { return key.kind == BlockKey::kPose; });
     ASSERT_NE(pose, eq.blocks.end());

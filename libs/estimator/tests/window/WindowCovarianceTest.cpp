@@ -167,7 +167,7 @@ TEST_F(WindowCovarianceTest, OutlivesTheFirstPose) {
   const auto prior = marginalise(window_, leaving, {{BlockKey::kPose, first}, {BlockKey::kMotion, first}});
   ASSERT_TRUE(prior);
   EXPECT_EQ(window_.drift.by_state.count({BlockKey::kPose, first}), 0u);
-  staying.push_back({prior->factor.get(), nullptr, prior->blocks});
+  staying.push_back(factorOf(*prior));
   window_.frames.pop_front();
   const WindowCovariance after = covariance(staying);
   ASSERT_TRUE(after.ok());

@@ -14,6 +14,7 @@
 #include "solver/Marginalizer.h"
 #include "window/LastingPoints.h"
 #include "window/OutlierRejection.h"
+#include "window/WindowFactors.h"
 
 namespace lintel {
 namespace {
@@ -66,6 +67,24 @@ TEST(MarginaliseOldest, LeavesOnePriorOnTheStatesThatStay) {
   EXPECT_TRUE(touches(prior, BlockKey::kExtrinsics, 0));
   for (const BlockKey& key : prior.blocks) EXPECT_TRUE(key.kind != BlockKey::kPoint && key.kind != BlockKey::kLine);
   EXPECT_TRUE(window.contains(0)) << "removing the frame is the caller's";
+}
+
+/// Only those measurements are made that may become part of the prior.
+TEST(MarginaliseOldest, ThePriorIsThatOfAllMeasurements) {
+  SlidingWindow window = flownWindow();
+  marginaliseOldest(window, kParams);  // its prior knows points, which the next oldest frame need not see
+  window.removeFrame(0, true);
+  ASSERT_FALSE(pointsInPriors(window).empty());
+  PointTrack& unseen = window.points.at(pointsInPriors(window).begin()->id);
+  unseen.sightings.erase(unseen.sightings.begin());
+  SlidingWindow other = window;
+  WindowFactors all(other, kParams.factors);
+  all.addMeasurements(kParams);
+  marginaliseOldest(other, all.factors(), kParams.landmarks, 0);
+  marginaliseOldest(window, kParams);
+  ASSERT_EQ(window.priors.back().blocks, other.priors.back().blocks);
+  EXPECT_EQ(window.priors.back().factor->root(), other.priors.back().factor->root());
+  EXPECT_EQ(window.priors.back().factor->constant(), other.priors.back().factor->constant());
 }
 
 TEST(MarginaliseOldest, NoSightingCountsTwice) {
@@ -170,7 +189,7 @@ TEST(MarginaliseOldest, ARestingFrameTakesItsVelocityAlong) {
     copy.frames[0].at_rest = at_rest;
     marginaliseOldest(copy, kParams);
     const WindowPrior& prior = copy.priors.back();
-    const NormalEquations eq = linearise(copy, {{prior.factor.get(), nullptr, prior.blocks}}, {{BlockKey::kMotion, 1}});
+    const NormalEquations eq = linearise(copy, {factorOf(prior)}, {{BlockKey::kMotion, 1}});
     return eq.H.topLeftCorner<3, 3>().trace();
   };
   const double of_rest = 3 / std::pow(kParams.rest_velocity_sigma, 2);  // on the velocity before the IMU turns it
@@ -209,7 +228,7 @@ TEST(MarginaliseOldest, AFrameThatHasNotMovedSinceIsHeldByThePrior) {
     window.frames[1].still = still;
     marginaliseOldest(window, kParams);
     const WindowPrior& prior = window.priors.back();
-    const NormalEquations eq = linearise(window, {{prior.factor.get(), nullptr, prior.blocks}}, {{BlockKey::kPose, 1}});
+    const NormalEquations eq = linearise(window, {factorOf(prior)}, {{BlockKey::kPose, 1}});
     return eq.H.topLeftCorner<3, 3>().trace();
   };
   EXPECT_GT(informationOnPosition(true), informationOnPosition(false));
