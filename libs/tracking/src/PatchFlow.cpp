@@ -5,6 +5,8 @@
 #include <cmath>
 #include <opencv2/core/hal/intrin.hpp>
 
+#include "lintel/core/ForAvx2.h"
+
 namespace lintel {
 namespace {
 
@@ -319,9 +321,11 @@ bool textured(const Template& patch, const PatchFlowParams& params, float& deter
 
 int patchBorder(int window_px) { return paddedColumns(window_px) + 3; }
 
-std::vector<unsigned char> followPatches(const std::vector<cv::Mat>& from, const std::vector<cv::Mat>& to,
-                                         const std::vector<cv::Point2f>& px, const PatchFlowParams& params,
-                                         std::vector<cv::Point2f>& moved) {
+LINTEL_FOR_AVX2_TOO std::vector<unsigned char> followPatches(const std::vector<cv::Mat>& from,
+                                                             const std::vector<cv::Mat>& to,
+                                                             const std::vector<cv::Point2f>& px,
+                                                             const PatchFlowParams& params,
+                                                             std::vector<cv::Point2f>& moved) {
   std::vector<unsigned char> found(px.size(), 0);
   Template patch(params.window_px);
   const int levels = std::min({params.levels, static_cast<int>(from.size()), static_cast<int>(to.size())});
