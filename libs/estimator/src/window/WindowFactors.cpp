@@ -8,7 +8,6 @@
 #include "lintel/factors/AxesImuFactor.h"
 #include "lintel/factors/StructuralFactor.h"
 #include "lintel/factors/VanishingFactor.h"
-#include "window/LastingPoints.h"
 
 namespace lintel {
 
@@ -49,26 +48,11 @@ void WindowFactors::addAll(const EstimatorParams& params, const Pose& T_b_c_cali
   addMeasurements(params);
 }
 
-void WindowFactors::addMeasurements(const EstimatorParams& params) {
+void WindowFactors::addMeasurements(const EstimatorParams& params, const TrackChoice& choice) {
   addImu();
   addRest(params);
-  addPoints();
-  addLines(params.degeneracy);
-}
-
-void WindowFactors::addMeasurementsWithOldest(const EstimatorParams& params) {
-  addImu();
-  addRest(params);
-  const FrameId oldest = window_.frames.front().id;
-  const auto sees = [oldest](const auto& track) {
-    return !track.sightings.empty() && track.sightings.front().frame == oldest;
-  };
-  const std::set<BlockKey> in_priors = pointsInPriors(window_);
-  for (const auto& [id, track] : window_.points)
-    if (track.triangulated && (sees(track) || in_priors.count({BlockKey::kPoint, id}) > 0)) addPoint(track);
-  const CameraPoses poses(window_);
-  for (const auto& [id, track] : window_.lines)
-    if (sees(track) && entersProblem(track, params.degeneracy)) addLine(track, poses, params.degeneracy);
+  addPoints(choice);
+  addLines(params.degeneracy, choice);
 }
 
 void WindowFactors::add(std::unique_ptr<ceres::CostFunction> cost, FactorBlocks blocks,
@@ -126,9 +110,9 @@ void WindowFactors::addRest(const EstimatorParams& params) {
   }
 }
 
-void WindowFactors::addPoints() {
+void WindowFactors::addPoints(const TrackChoice& choice) {
   for (const auto& [id, track] : window_.points)
-    if (track.triangulated) addPoint(track);
+    if (track.triangulated && choice.point(track)) addPoint(track);
 }
 
 void WindowFactors::addPoint(const PointTrack& track) {
@@ -147,10 +131,10 @@ void WindowFactors::addPoint(const PointTrack& track) {
   }
 }
 
-void WindowFactors::addLines(const DegeneracyParams& degeneracy) {
+void WindowFactors::addLines(const DegeneracyParams& degeneracy, const TrackChoice& choice) {
   const CameraPoses poses(window_);
   for (const auto& [id, track] : window_.lines)
-    if (entersProblem(track, degeneracy)) addLine(track, poses, degeneracy);
+    if (choice.line(track) && entersProblem(track, degeneracy)) addLine(track, poses, degeneracy);
 }
 
 /// With what ties it to its group, if it has one.

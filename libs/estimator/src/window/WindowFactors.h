@@ -4,6 +4,7 @@
 #include <ceres/loss_function.h>
 
 #include <deque>
+#include <functional>
 #include <map>
 #include <memory>
 #include <memory_resource>
@@ -18,6 +19,12 @@
 
 namespace lintel {
 
+/// The tracks whose sightings are wanted; by default all.
+struct TrackChoice {
+  std::function<bool(const PointTrack&)> point = [](const PointTrack&) { return true; };
+  std::function<bool(const LineTrack&)> line = [](const LineTrack&) { return true; };
+};
+
 /// Makes the residuals of a window and owns them: in one place for solver, marginaliser and covariances.
 class WindowFactors {
  public:
@@ -29,11 +36,7 @@ class WindowFactors {
 
   /// What was measured: IMU, rest, points, lines. These go into a prior when a frame leaves that they touch; a new kind
   /// of residual is added here.
-  void addMeasurements(const EstimatorParams& params);
-
-  /// Of these, those that may become part of the prior when the oldest frame leaves: of points and lines only the ones
-  /// that it sees, and points that priors know.
-  void addMeasurementsWithOldest(const EstimatorParams& params);
+  void addMeasurements(const EstimatorParams& params, const TrackChoice& choice = {});
 
   void addPriors();
   /// Of what is refined; the solver holds the rest (holdCalibration). They have a robust loss, the lever arm's once the
@@ -45,8 +48,8 @@ class WindowFactors {
   void addAxesPrior(const CalibrationParams& params);
   void addImu();
   void addRest(const EstimatorParams& params);
-  void addPoints();
-  void addLines(const DegeneracyParams& degeneracy);
+  void addPoints(const TrackChoice& choice = {});
+  void addLines(const DegeneracyParams& degeneracy, const TrackChoice& choice = {});
 
   /// What a sighting says about the direction of the line's group alone.
   void addVanishing(const LineTrack& track, const LineSighting& sighting, const CameraPoses& poses,

@@ -49,6 +49,18 @@ std::set<BlockKey> leavingWith(const SlidingWindow& window, const WindowFrame& f
 /// shared directions stay out of priors: which lines share one is decided anew with every frame.
 bool outlastsTracks(const BlockKey& key) { return !isLandmark(key) && key.kind != BlockKey::kDirection; }
 
+/// The tracks whose sightings may become part of the prior when the oldest frame leaves: those that it sees, and points
+/// that priors know.
+TrackChoice mayGoWithOldest(const SlidingWindow& window) {
+  const auto sees = [oldest = window.frames.front().id](const auto& track) {
+    return !track.sightings.empty() && track.sightings.front().frame == oldest;
+  };
+  return {[sees, known = pointsInPriors(window)](const PointTrack& track) {
+            return sees(track) || known.count({BlockKey::kPoint, track.id}) > 0;
+          },
+          sees};
+}
+
 /// The factors that become part of the prior: those that touch a block that leaves, if a prior may hold all others. Not
 /// the sightings by the newest frame: a track that goes on starts anew with its newest sighting.
 std::vector<Factor> goingWith(const std::set<BlockKey>& leaving, const std::set<BlockKey>& staying, FrameId newest,
@@ -108,7 +120,7 @@ void marginaliseOldest(SlidingWindow& window, const std::vector<Factor>& measure
 
 void marginaliseOldest(SlidingWindow& window, const EstimatorParams& params, double scale_walk) {
   WindowFactors factors(window, params.factors);
-  factors.addMeasurementsWithOldest(params);
+  factors.addMeasurements(params, mayGoWithOldest(window));
   marginaliseOldest(window, factors.factors(), params.landmarks, scale_walk);
 }
 
